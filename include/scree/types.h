@@ -1,0 +1,188 @@
+/// \file types.h
+/// The scene: everything a run is made from, as plain definitions in SI units. scree_scene_read() fills it from YAML;
+/// names are resolved to indices when the simulation is made. Fields marked "auto" are NAN (numbers) while automatic.
+#ifndef SCREE_TYPES_H
+#define SCREE_TYPES_H
+
+#include "scree/base.h"
+
+#ifdef __cplusplus
+extern "C"
+{
+#endif
+
+    typedef struct scree_material_def
+    {
+        char *name;
+        double density;        ///< [kg/m^3]
+        double youngs_modulus; ///< [Pa]
+        double poisson_ratio;  ///< [1]
+        double shear_modulus;  ///< [Pa]; auto: E / (2 (1 + nu))
+    } scree_material_def;
+
+    /// Which 1/G* a pair uses (physics: section 1).
+    typedef enum scree_shear_mixing
+    {
+        SCREE_SHEAR_MINDLIN, ///< (2 - nu1)/G1 + (2 - nu2)/G2
+        SCREE_SHEAR_BILOCK   ///< (1 - nu1^2)/G1 + (1 - nu2^2)/G2, Bilock (2020), eq. 4.11
+    } scree_shear_mixing;
+
+    typedef struct scree_contact_law_def
+    {
+        char *materials[2];             ///< names of the two materials, in any order
+        char *model;                    ///< name in the registry of force models, default "volumetric_hertz_mindlin"
+        double friction_coefficient;    ///< [1]
+        double restitution_coefficient; ///< [1]; auto if damping_ratio is given; exactly one of the two
+        double damping_ratio;           ///< [1] g of physics section 2; auto: from the restitution coefficient
+        double stiffness_factor;        ///< [1] factor of the volumetric law, default 0.7522527780636751
+        double tangential_spring;       ///< [1] 1: with tangential history, 0: tangential damping alone
+        bool attraction;                ///< true: the total normal force may turn attractive at separation
+        scree_shear_mixing shear_mixing;
+    } scree_contact_law_def;
+
+    typedef enum scree_shape_source
+    {
+        SCREE_SHAPE_FILE,
+        SCREE_SHAPE_BOX,
+        SCREE_SHAPE_TETRAHEDRON,
+        SCREE_SHAPE_SCHOENHARDT,
+        SCREE_SHAPE_SPHERE,
+        SCREE_SHAPE_ROCK
+    } scree_shape_source;
+
+    typedef struct scree_shape_def
+    {
+        char *name;
+        scree_shape_source source;
+        char *file;        ///< mesh file, relative to the scene's folder; only for source file
+        double size[3];    ///< [m] edge lengths of a box; first one: diameter of the enclosing sphere of the others
+        int64_t triangles; ///< wanted number of triangles (sphere, rock); of a file: simplified to it; 0: as it is
+        int64_t seed;      ///< of a rock
+    } scree_shape_def;
+
+    typedef enum scree_size_distribution
+    {
+        SCREE_SIZE_AS_SHAPE, ///< scale 1: the shape's own size
+        SCREE_SIZE_FIXED,    ///< mean
+        SCREE_SIZE_UNIFORM,  ///< between min and max
+        SCREE_SIZE_NORMAL    ///< mean, deviation, truncated to min .. max by drawing again
+    } scree_size_distribution;
+
+    /// Size of a particle: the middle one of the three extents of its box in the body frame.
+    typedef struct scree_size_def
+    {
+        scree_size_distribution distribution;
+        double mean, deviation, min, max; ///< [m]
+    } scree_size_def;
+
+    /// One particle placed by hand.
+    typedef struct scree_body_def
+    {
+        double position[3];         ///< [m] of the centroid
+        double orientation[4];      ///< (w, x, y, z) of the shape as given by its source, default identity
+        double size;                ///< [m] middle size; auto: the shape's own
+        double velocity[3];         ///< [m/s]
+        double angular_velocity[3]; ///< [rad/s], world axes
+    } scree_body_def;
+
+    /// Particles of one shape and material: either listed one by one in `bodies`, or filled into a region.
+    typedef struct scree_particle_group_def
+    {
+        char *name;
+        char *shape;
+        char *material;
+        scree_size_def size;
+        int64_t count;       ///< number to fill in; 0: by mass
+        double mass;         ///< [kg] total to fill in; 0: by count
+        double region[2][3]; ///< [m] lower and upper corner of the box to fill, from the bottom up
+        double spacing;      ///< [1] distance of the lattice over the largest bounding diameter, default 1.05
+        int64_t seed;        ///< of sizes, orientations and jitter
+        double velocity[3];  ///< [m/s] initial
+        scree_body_def *bodies;
+        uint32_t num_bodies;
+    } scree_particle_group_def;
+
+    typedef enum scree_motion_kind
+    {
+        SCREE_MOTION_FIXED,
+        SCREE_MOTION_TRANSLATE,
+        SCREE_MOTION_ROTATE
+    } scree_motion_kind;
+
+    /// Prescribed motion of a wall between two times; at rest before and after.
+    typedef struct scree_motion_def
+    {
+        scree_motion_kind kind;
+        double velocity[3];      ///< [m/s] translate
+        double axis[3];          ///< rotate: direction, any length > 0
+        double centre[3];        ///< [m] rotate: a point of the axis
+        double angular_velocity; ///< [rad/s] rotate
+        double start, end;       ///< [s]; default 0 and never
+    } scree_motion_def;
+
+    typedef struct scree_wall_def
+    {
+        char *name;
+        char *shape;
+        char *material;
+        double position[3];    ///< [m] of the origin of the shape's source frame
+        double orientation[4]; ///< (w, x, y, z)
+        scree_motion_def motion;
+        double removed_at; ///< [s] gone from then on; default never
+    } scree_wall_def;
+
+    typedef struct scree_time_def
+    {
+        double end;           ///< [s]
+        double step;          ///< [s]; auto: from the stiffness of the contacts
+        double step_fraction; ///< [1] share of the critical step that auto takes, default 0.15
+    } scree_time_def;
+
+    /// Intervals of output; 0 switches that output off.
+    typedef struct scree_output_def
+    {
+        double series;     ///< [s] rows of series.csv
+        double frames;     ///< [s] steps of frames.vtkhdf
+        double checkpoint; ///< [s] of simulated time
+    } scree_output_def;
+
+    /// Angle of repose measured at the end: heights in bins along x, sigmoid fitted (Bilock 2020, 6.3).
+    typedef struct scree_repose_def
+    {
+        bool measure;
+        double from, to; ///< [m] range of x
+        double base;     ///< [m] height of the plate
+        int64_t bins;    ///< default 20
+    } scree_repose_def;
+
+    typedef struct scree_solver_def
+    {
+        double skin;           ///< [1] share of the mean bounding radius added to the boxes; default 0.1
+        char *overlap_scheme;  ///< "filtered" (default) or "hierarchy"
+        bool separate_patches; ///< default false: one contact per pair
+    } scree_solver_def;
+
+    typedef struct scree_scene
+    {
+        char *name;
+        double gravity[3]; ///< [m/s^2]
+        scree_time_def time;
+        scree_material_def *materials;
+        uint32_t num_materials;
+        scree_contact_law_def *contact_laws;
+        uint32_t num_contact_laws;
+        scree_shape_def *shapes;
+        uint32_t num_shapes;
+        scree_particle_group_def *particles;
+        uint32_t num_particles; ///< number of groups
+        scree_wall_def *walls;
+        uint32_t num_walls;
+        scree_solver_def solver;
+        scree_output_def output;
+        scree_repose_def repose;
+    } scree_scene;
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,52 @@
+/// \file broad_phase.h
+/// Boxes with skin to sorted, unique candidate pairs. When to rebuild is the simulation's decision.
+#ifndef SCREE_BROAD_PHASE_H
+#define SCREE_BROAD_PHASE_H
+
+#include "bvh/lbvh.h"
+
+/// Two bodies that may touch; i < j. Particles have ids 0 .. num_particles - 1, wall w has id num_particles + w.
+typedef struct scree_candidate_pair
+{
+    int32_t i, j;
+} scree_candidate_pair;
+
+/// One wall as the broad phase sees it: its tree of triangles in its own frame, and where that frame is now.
+typedef struct scree_broad_phase_wall
+{
+    scree_lbvh_view tree; ///< unscaled body frame
+    scree_pose pose;
+    bool is_present; ///< a removed wall makes no pairs
+} scree_broad_phase_wall;
+
+/// Input of one search. Boxes and spheres already contain the skin.
+typedef struct scree_broad_phase_input
+{
+    const scree_box *boxes;              ///< (num_particles) world boxes with skin
+    const scree_vec3 *centres;           ///< (num_particles) centres of bounding spheres, for the walls
+    const scree_real *radii;             ///< (num_particles) radii of bounding spheres with skin
+    const scree_broad_phase_wall *walls; ///< (num_walls)
+    int64_t num_particles;
+    int64_t num_walls;
+} scree_broad_phase_input;
+
+/// Owns the particle tree, the pairs and all scratch. Start from {0}.
+typedef struct scree_broad_phase
+{
+    scree_lbvh tree;
+    scree_candidate_pair *pairs; ///< (num_pairs) sorted by (i, j), each once
+    int64_t num_pairs;
+    int64_t *row_begin;                        ///< (num_bodies + 1) start of each body's row in row_pairs
+    int32_t *row_pairs;                        ///< (2 num_pairs) for each body the indices of its pairs, ascending
+    struct scree_broad_phase_buffers *buffers; ///< internal
+} scree_broad_phase;
+
+/// Finds all pairs of particles whose boxes overlap, and all pairs (particle, wall) where a particle's sphere meets
+/// the box of one of the wall's triangles. Parallel, same pairs for any number of threads.
+scree_status scree_broad_phase_find(scree_broad_phase *broad_phase, const scree_broad_phase_input *input);
+/// Pairs sorted and unique, i < j, rows complete; compared with all pairs by brute force if num_particles <= 2000.
+bool scree_broad_phase_validate(const scree_broad_phase *broad_phase, const scree_broad_phase_input *input,
+                                scree_report *report);
+void scree_broad_phase_destroy(scree_broad_phase *broad_phase);
+
+#endif

@@ -1,0 +1,46 @@
+/// \file lbvh_kernel.h
+/// Nodes and stackless traversal of the linear bounding-volume hierarchy, shared by particles, triangles and walls.
+#ifndef SCREE_LBVH_KERNEL_H
+#define SCREE_LBVH_KERNEL_H
+
+#include "core/vec.h"
+
+/// End of a traversal: no further node.
+#define SCREE_LBVH_END (-1)
+
+/// One node. A hit goes on with first_child, a miss or a leaf with escape (Prokopenko & Lebrun-Grandie 2024).
+typedef struct scree_lbvh_node
+{
+    scree_box box;
+    int32_t first_child; ///< inner node: its left child; leaf: ~item, that is -1 - item, always < 0
+    int32_t escape;      ///< the node after this subtree, or SCREE_LBVH_END
+} scree_lbvh_node;
+
+/// A built tree as kernels see it: borrowed pointers.
+typedef struct scree_lbvh_view
+{
+    const scree_lbvh_node *nodes; ///< (2 num_leaves - 1), or NULL if there are no leaves
+    int32_t num_leaves;
+    int32_t root; ///< SCREE_LBVH_END if there are no leaves
+} scree_lbvh_view;
+
+/// Goes on from node k (start with tree.root) to the next leaf whose box overlaps the query.
+/// Returns the leaf's item and stores the node to go on from in *next; returns -1 at the end.
+SCREE_FN int32_t scree_lbvh_next_overlap(scree_lbvh_view tree, scree_box query, int32_t k, int32_t *next)
+{
+    while (k != SCREE_LBVH_END)
+    {
+        const scree_lbvh_node *node = tree.nodes + k;
+        if (!scree_box_overlaps(node->box, query)) k = node->escape;
+        else if (node->first_child >= 0) k = node->first_child;
+        else
+        {
+            *next = node->escape;
+            return -1 - node->first_child;
+        }
+    }
+    *next = SCREE_LBVH_END;
+    return -1;
+}
+
+#endif

@@ -1,0 +1,48 @@
+/// \file shape.h
+/// What a body's shape is to the step: mesh in the body frame, the tree over its triangles, its measures.
+#ifndef SCREE_SHAPE_INTERNAL_H
+#define SCREE_SHAPE_INTERNAL_H
+
+#include "bvh/lbvh.h"
+#include "polyhedra/mass_properties.h"
+#include "polyhedra/mesh.h"
+
+/// Geometry of one shape as kernels see it: borrowed pointers, body frame, unscaled.
+typedef struct scree_shape_view
+{
+    const scree_vec3 *vertices;      ///< (num_vertices)
+    const scree_triangle *triangles; ///< (num_triangles)
+    const int32_t *neighbours;       ///< (num_triangles, 3) triangle across edge (v[k], v[k+1])
+    scree_lbvh_view tree;            ///< over the boxes of the triangles
+    int32_t num_vertices;
+    int32_t num_triangles;
+    bool is_convex;
+    scree_real bounding_radius; ///< about the origin of the body frame
+    scree_box box;              ///< of the vertices, body frame
+} scree_shape_view;
+
+/// Owns its mesh and tree; shared by all bodies of this shape. Start from {0}.
+typedef struct scree_shape
+{
+    scree_mesh mesh; ///< body frame
+    int32_t *neighbours;
+    scree_lbvh tree;
+    scree_mass_properties properties; ///< of the mesh as stored, in the body frame
+    scree_shape_view view;
+    double frame_position[3];    ///< origin of the body frame in the frame of the source mesh
+    double frame_orientation[4]; ///< body frame to source frame, (w, x, y, z)
+    double middle_size;          ///< middle one of the three extents of view.box
+} scree_shape;
+
+/// Which frame the body gets.
+typedef enum scree_shape_frame
+{
+    SCREE_FRAME_PRINCIPAL, ///< origin in the centroid, axes along the principal axes: particles
+    SCREE_FRAME_SOURCE     ///< as the mesh was given: walls, posed overlaps
+} scree_shape_frame;
+
+/// Copies the mesh, which must be valid, moves it into its frame and builds the tree.
+scree_status scree_shape_create(scree_shape *shape, const scree_mesh *mesh, scree_shape_frame frame);
+void scree_shape_destroy(scree_shape *shape);
+
+#endif

@@ -1,0 +1,84 @@
+/// \file simulation.h
+/// A simulation: made from a scene, advanced step by step, looked at through energies and counters.
+#ifndef SCREE_SIMULATION_H
+#define SCREE_SIMULATION_H
+
+#include "scree/types.h"
+
+#ifdef __cplusplus
+extern "C"
+{
+#endif
+
+    typedef struct scree_simulation scree_simulation;
+
+    /// Where the energy is [J]. balance() of a run: kinetic + rotational + potential + elastic + dissipated - input
+    /// stays what it was at the start.
+    typedef struct scree_energies
+    {
+        double kinetic; ///< of translation
+        double rotational;
+        double potential;          ///< gravity, zero at the origin
+        double elastic_normal;     ///< work stored in the normal springs of present contacts
+        double elastic_tangential; ///< F^2/(2 k_t) of the tangential springs of present contacts
+        double damping;            ///< dissipated by normal and tangential damping, accumulated
+        double friction;           ///< dissipated by slip and lost tangential springs, accumulated
+        double hysteresis;         ///< stored in normal springs and not given back when contacts ended, accumulated;
+                                   ///< negative if the law gave back more: it is not the gradient of an energy
+        double input;              ///< put in by moving walls, accumulated
+    } scree_energies;
+
+    /// Kinetic + rotational + potential + elastic + dissipated - input [J].
+    double scree_energies_balance(const scree_energies *energies);
+
+    typedef struct scree_counters
+    {
+        int64_t num_pairs;             ///< candidate pairs now
+        int64_t num_contacts;          ///< contacts now
+        int64_t num_rebuilds;          ///< neighbour searches so far
+        int64_t num_without_normal;    ///< overlaps without a normal so far: no force, see overlap.h
+        int64_t num_fallbacks;         ///< overlaps repeated with the hierarchy so far
+        double worst_residual;         ///< worst certificate so far
+        double largest_indentation;    ///< [m] so far
+        double smallest_critical_step; ///< [s] smallest sqrt(m_eff/k_eff) over contacts so far
+    } scree_counters;
+
+    /// Makes shapes, particles and walls from a scene, which must outlive the simulation. `folder` is where mesh files
+    /// are looked for. All faults go to the report. The state is that of time 0 with the forces of that moment.
+    scree_status scree_simulation_create(scree_simulation **simulation, const scree_scene *scene, const char *folder,
+                                         scree_report *report);
+    void scree_simulation_destroy(scree_simulation *simulation);
+    /// One step. SCREE_OUT_OF_MEMORY and SCREE_UNSTABLE lose the simulation.
+    scree_status scree_simulation_step(scree_simulation *simulation, scree_report *report);
+
+    double scree_simulation_time(const scree_simulation *simulation);       ///< [s]
+    double scree_simulation_time_step(const scree_simulation *simulation);  ///< [s]
+    int64_t scree_simulation_num_steps(const scree_simulation *simulation); ///< steps that the scene's end asks for
+    int64_t scree_simulation_num_particles(const scree_simulation *simulation);
+    /// Energies at the present moment.
+    scree_energies scree_simulation_energies(const scree_simulation *simulation);
+    scree_counters scree_simulation_counters(const scree_simulation *simulation);
+    /// 64-bit hash of the moving state; equal states have equal hashes.
+    uint64_t scree_simulation_hash(const scree_simulation *simulation);
+
+    /// Result of the fit of section "repose" of the scene.
+    typedef struct scree_repose
+    {
+        double angle_degrees;             ///< steepest slope of the fitted sigmoid
+        double height, steepness, middle; ///< c [m], a [1/m], b [m] of h(x) = c/(1 + exp(a (x - b)))
+        double residual;                  ///< [m] root mean square of the fit
+        int64_t num_bins;
+        double bin_x[256];      ///< [m] middles
+        double bin_height[256]; ///< [m] largest height of a vertex above the plate
+    } scree_repose;
+
+    /// Angle of repose of the present state. SCREE_INVALID_INPUT if fewer than 4 bins hold particles.
+    scree_status scree_simulation_repose(const scree_simulation *simulation, scree_repose *repose);
+
+    /// Prints the plan: stages, why each is in, bytes per particle or contact. `stream` is a FILE *.
+    void scree_simulation_print_plan(const scree_simulation *simulation, void *stream);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,42 @@
+/// \file contact_list.h
+/// The contacts of the present step in SoA form, sorted by (i, j, patch), with the history that follows each of them.
+#ifndef SCREE_CONTACT_LIST_H
+#define SCREE_CONTACT_LIST_H
+
+#include "bvh/broad_phase.h"
+
+/// Owns its arrays, all (num_contacts) unless stated. Start from {0}.
+/// i < j; j may be a wall (id num_particles + w). Vectors in world axes.
+typedef struct scree_contact_list
+{
+    int64_t num_contacts;
+    int64_t max_contacts;
+    int64_t max_pairs;
+    int64_t *first_of_pair; ///< (num_pairs + 1) contacts of candidate pair p are first_of_pair[p] .. [p + 1] - 1
+
+    // geometry, from the narrow phase
+    scree_candidate_pair *bodies;
+    int32_t *patch;          ///< 0, 1, ... within the pair
+    scree_real *volume;      ///< [m^3]
+    scree_real *indentation; ///< [m]
+    scree_vec3 *normal;      ///< [1] unit, from j towards i
+    scree_vec3 *area_vector; ///< [m^2] area of i's surface inside j, outward from i
+    scree_vec3 *arm;         ///< [m] contact point minus position of i
+
+    // forces, from the force law
+    scree_vec3 *normal_force;     ///< [N] on i; that on j is the exact opposite
+    scree_vec3 *tangential_force; ///< [N] on i, spring and damping, capped
+
+    // history, carried from step to step
+    scree_vec3 *spring_force;         ///< [N] elastic part of the tangential force on i
+    scree_real *tangential_stiffness; ///< [N/m] k_t of the last step
+    scree_real *elastic_energy;       ///< [J] work done against the elastic normal force that it has not given back
+} scree_contact_list;
+
+/// Room for num_contacts and num_pairs, growing by half at least. SCREE_OUT_OF_MEMORY leaves the list as it was.
+scree_status scree_contact_list_reserve(scree_contact_list *list, int64_t num_contacts, int64_t num_pairs);
+void scree_contact_list_destroy(scree_contact_list *list);
+/// Sorted by (i, j, patch), unique, normals unit, volumes positive. Faults go to the report.
+bool scree_contact_list_validate(const scree_contact_list *list, scree_report *report);
+
+#endif

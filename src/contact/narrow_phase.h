@@ -1,0 +1,41 @@
+/// \file narrow_phase.h
+/// Candidate pairs to contacts: separation test, overlap, compaction into the sorted contact list.
+#ifndef SCREE_NARROW_PHASE_H
+#define SCREE_NARROW_PHASE_H
+
+#include "contact/contact_list.h"
+#include "contact/overlap.h"
+
+/// Bodies as the narrow phase sees them: particles first, then walls.
+typedef struct scree_bodies
+{
+    const scree_shape_view *shapes; ///< all shapes
+    const int32_t *shape;           ///< (num_bodies) index into shapes
+    const scree_pose *pose;         ///< (num_bodies)
+    int64_t num_bodies;
+} scree_bodies;
+
+/// What one search met.
+typedef struct scree_narrow_phase_counts
+{
+    int64_t num_without_normal;
+    int64_t num_fallbacks;
+    scree_real worst_residual;
+    scree_real largest_indentation;
+} scree_narrow_phase_counts;
+
+/// Owns a workspace per thread and the results per pair. Start from {0}.
+typedef struct scree_narrow_phase
+{
+    scree_overlap_options options;
+    scree_narrow_phase_counts counts;           ///< of the last search
+    struct scree_narrow_phase_buffers *buffers; ///< internal
+} scree_narrow_phase;
+
+/// Finds the contacts of all candidate pairs and writes the geometry of `list`; forces and history are left alone.
+/// Same list for any number of threads. SCREE_OUT_OF_MEMORY.
+scree_status scree_narrow_phase_find(scree_narrow_phase *narrow_phase, const scree_bodies *bodies,
+                                     const scree_candidate_pair *pairs, int64_t num_pairs, scree_contact_list *list);
+void scree_narrow_phase_destroy(scree_narrow_phase *narrow_phase);
+
+#endif

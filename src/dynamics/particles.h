@@ -1,0 +1,41 @@
+/// \file particles.h
+/// State of all particles in SoA form; the index of a particle is its id.
+#ifndef SCREE_PARTICLES_H
+#define SCREE_PARTICLES_H
+
+#include "core/vec.h"
+#include "scree/base.h"
+
+/// Owns its arrays, all (num_particles), host memory.
+typedef struct scree_particles
+{
+    int64_t num_particles;
+
+    // moving
+    scree_vec3 *position;         ///< [m] centroid
+    scree_quat *orientation;      ///< body frame (principal axes) to world
+    scree_vec3 *velocity;         ///< [m/s]
+    scree_vec3 *angular_momentum; ///< [kg m^2/s] world axes, about the centroid
+    scree_vec3 *force;            ///< [N] of contacts and gravity
+    scree_vec3 *torque;           ///< [N m] of contacts
+
+    // constant
+    scree_real *scale;   ///< [1] size over the size of the shape
+    scree_real *mass;    ///< [kg]
+    scree_vec3 *inertia; ///< [kg m^2] principal moments
+    int32_t *shape;      ///< index of the particle shape
+    int32_t *material;   ///< index of the material
+    int32_t *group;      ///< index of the particle group of the scene
+} scree_particles;
+
+scree_status scree_particles_create(scree_particles *particles, int64_t num_particles);
+void scree_particles_destroy(scree_particles *particles);
+
+/// [rad/s] world axes: R I^-1 R^T L.
+SCREE_FN scree_vec3 scree_angular_velocity(scree_vec3 angular_momentum, scree_vec3 inertia, scree_mat3 rotation)
+{
+    const scree_vec3 body = scree_mat3_apply_transposed(rotation, angular_momentum);
+    return scree_mat3_apply(rotation, scree_vec3_make(body.x / inertia.x, body.y / inertia.y, body.z / inertia.z));
+}
+
+#endif

@@ -1,0 +1,44 @@
+/// \file state.h
+/// What a simulation is made of: constant data, moving state, scratch. Shared by dynamics and io only.
+#ifndef SCREE_STATE_H
+#define SCREE_STATE_H
+
+#include "bvh/broad_phase.h"
+#include "contact/contact_list.h"
+#include "contact/narrow_phase.h"
+#include "dynamics/particles.h"
+#include "dynamics/walls.h"
+#include "forces/force_model.h"
+#include "polyhedra/shape.h"
+#include "scree/simulation.h"
+#include "scree/types.h"
+
+struct scree_simulation
+{
+    // constant: set by scree_simulation_create()
+    const scree_scene *scene;      ///< borrowed; must outlive the simulation
+    scree_shape *particle_shapes;  ///< (num_shapes) principal frames; entries not used by particles are {0}
+    scree_shape *wall_shapes;      ///< (num_shapes) source frames; entries not used by walls are {0}
+    scree_shape_view *shape_views; ///< (2 num_shapes) particle shapes, then wall shapes
+    scree_force_law *laws;         ///< (num_materials, num_materials)
+    int32_t num_shapes;
+    int32_t num_materials;
+    int32_t num_walls;
+    double time_step; ///< [s]
+
+    // moving
+    int64_t step; ///< number of steps done; time = step * time_step
+    scree_particles particles;
+    scree_wall_state *walls;     ///< (num_walls)
+    scree_contact_list contacts; ///< of the present step
+    scree_energies energies;     ///< accumulated parts; see simulation.h
+    scree_counters counters;
+
+    // scratch
+    scree_contact_list old_contacts; ///< of the step before, for the history
+    scree_broad_phase broad_phase;
+    scree_narrow_phase narrow_phase;
+    struct scree_step_buffers *buffers; ///< internal to simulation.c and neighbours.c
+};
+
+#endif

@@ -26,6 +26,9 @@ typedef struct scree_contact_list
     // forces, from the force law
     scree_vec3 *normal_force;     ///< [N] on i; that on j is the exact opposite
     scree_vec3 *tangential_force; ///< [N] on i, spring and damping, capped
+    scree_real *elastic_force;    ///< [N] elastic part of the normal force
+    scree_real *spring_work;      ///< [J] change of the tangential spring's energy in this step
+    uint8_t *is_slipping;         ///< 1 while the tangential force is at the Coulomb limit
 
     // history, carried from step to step
     scree_vec3 *spring_force;         ///< [N] elastic part of the tangential force on i

@@ -38,7 +38,11 @@ struct scree_simulation
     scree_contact_list old_contacts; ///< of the step before, for the history
     scree_broad_phase broad_phase;
     scree_narrow_phase narrow_phase;
-    struct scree_step_buffers *buffers; ///< internal to simulation.c and neighbours.c
+    struct scree_step_buffers *buffers; ///< internal to dynamics
 };
+
+/// Call after the moving state has been replaced (restart): finds neighbours anew and ties the contacts' history to
+/// them. contacts must be sorted by (i, j, patch).
+scree_status scree_simulation_restored(scree_simulation *simulation, scree_report *report);
 
 #endif

@@ -1,0 +1,3 @@
+#include "contact/history.h"
+
+SCREE_DEFINE_LAUNCH(scree_history_match)

@@ -1,0 +1,80 @@
+/// \file history_kernel.h
+/// Which contact of the step before a contact continues: same pair and patch. Both lists are sorted by (i, j, patch),
+/// so the old one is found by its pair while the candidate pairs stay, and by bisection after they have changed.
+#ifndef SCREE_HISTORY_KERNEL_H
+#define SCREE_HISTORY_KERNEL_H
+
+#include "contact/contact_list.h"
+
+typedef struct scree_history_match_args
+{
+    const scree_candidate_pair *pairs;      ///< (num_pairs) present candidate pairs
+    const int64_t *first_of_pair;           ///< (num_pairs + 1) present contacts of each
+    const int64_t *old_first_of_pair;       ///< (num_pairs + 1) old contacts of each, or NULL if the pairs have changed
+    const scree_candidate_pair *old_bodies; ///< (num_old)
+    const scree_vec3 *arm;                  ///< (num_contacts)
+    const scree_vec3 *old_arm;              ///< (num_old)
+    int64_t num_old;
+    int64_t *old_of_contact; ///< (num_contacts) out: old contact or -1
+    uint8_t *is_continued;   ///< (num_old) out: 1 where an old contact goes on; zeroed before
+} scree_history_match_args;
+
+/// First old contact whose pair is not smaller than (i, j).
+SCREE_FN int64_t scree_history_lower_bound(const scree_candidate_pair *bodies, int64_t num, scree_candidate_pair key)
+{
+    int64_t low = 0, high = num;
+    while (low < high)
+    {
+        const int64_t middle = low + (high - low) / 2;
+        const scree_candidate_pair b = bodies[middle];
+        if (b.i < key.i || (b.i == key.i && b.j < key.j)) low = middle + 1;
+        else high = middle;
+    }
+    return low;
+}
+
+/// Squared distance of two contact points, both measured from the same body.
+SCREE_FN scree_real scree_history_distance(scree_vec3 a, scree_vec3 b)
+{
+    const scree_vec3 d = scree_vec3_sub(a, b);
+    return scree_vec3_dot(d, d);
+}
+
+/// All contacts of candidate pair p. Several patches of one pair take their nearest old patch that is still free,
+/// in ascending order of patch.
+SCREE_FN void scree_history_match_at(scree_history_match_args a, int64_t p)
+{
+    const int64_t begin = a.first_of_pair[p], end = a.first_of_pair[p + 1];
+    if (begin == end) return;
+    const scree_candidate_pair key = a.pairs[p];
+    int64_t old_begin, old_end;
+    if (a.old_first_of_pair)
+    {
+        old_begin = a.old_first_of_pair[p];
+        old_end = a.old_first_of_pair[p + 1];
+    }
+    else
+    {
+        old_begin = scree_history_lower_bound(a.old_bodies, a.num_old, key);
+        old_end = old_begin;
+        while (old_end < a.num_old && a.old_bodies[old_end].i == key.i && a.old_bodies[old_end].j == key.j) ++old_end;
+    }
+    for (int64_t c = begin; c < end; ++c)
+    {
+        int64_t best = -1;
+        scree_real best_distance = SCREE_REAL_MAX;
+        for (int64_t o = old_begin; o < old_end; ++o)
+        {
+            const scree_real distance = scree_history_distance(a.arm[c], a.old_arm[o]);
+            if (!a.is_continued[o] && distance < best_distance)
+            {
+                best = o;
+                best_distance = distance;
+            }
+        }
+        a.old_of_contact[c] = best;
+        if (best >= 0) a.is_continued[best] = 1;
+    }
+}
+
+#endif

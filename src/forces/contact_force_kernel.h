@@ -1,0 +1,86 @@
+/// \file contact_force_kernel.h
+/// Force of contact c: relative velocity and history in, force law, force and history out.
+#ifndef SCREE_CONTACT_FORCE_KERNEL_H
+#define SCREE_CONTACT_FORCE_KERNEL_H
+
+#include "contact/contact_list.h"
+#include "forces/volumetric_kernel.h"
+
+/// Bodies as the forces see them: particles first, then walls; all (num_bodies).
+typedef struct scree_body_motion
+{
+    const scree_pose *pose;
+    const scree_vec3 *velocity;         ///< [m/s] at the position of the pose
+    const scree_vec3 *angular_velocity; ///< [rad/s] world axes
+    const scree_real *inverse_mass;     ///< [1/kg]; 0 for walls
+    const int32_t *material;
+} scree_body_motion;
+
+/// Velocity of i against j at the point position_i + arm.
+SCREE_FN scree_vec3 scree_relative_velocity(const scree_body_motion *bodies, int32_t i, int32_t j, scree_vec3 arm)
+{
+    const scree_vec3 point = scree_vec3_add(bodies->pose[i].position, arm);
+    const scree_vec3 arm_j = scree_vec3_sub(point, bodies->pose[j].position);
+    const scree_vec3 v_i = scree_vec3_add(bodies->velocity[i], scree_vec3_cross(bodies->angular_velocity[i], arm));
+    const scree_vec3 v_j = scree_vec3_add(bodies->velocity[j], scree_vec3_cross(bodies->angular_velocity[j], arm_j));
+    return scree_vec3_sub(v_i, v_j);
+}
+
+typedef struct scree_contact_force_args
+{
+    scree_contact_list contacts;     ///< present: geometry read, forces and history written
+    scree_contact_list old_contacts; ///< of the step before: history read
+    const int64_t *old_of_contact;   ///< (num_contacts) or -1
+    scree_body_motion bodies;
+    const scree_force_law *laws; ///< (num_materials, num_materials)
+    int32_t num_materials;
+    scree_real time_step; ///< [s]
+} scree_contact_force_args;
+
+/// Energy of a tangential spring [J].
+SCREE_FN scree_real scree_spring_energy(scree_vec3 spring_force, scree_real tangential_stiffness)
+{
+    if (!(tangential_stiffness > 0)) return 0;
+    return scree_vec3_dot(spring_force, spring_force) / (2 * tangential_stiffness);
+}
+
+SCREE_FN void scree_contact_force_at(scree_contact_force_args a, int64_t c)
+{
+    const scree_candidate_pair pair = a.contacts.bodies[c];
+    const scree_force_law *law =
+        a.laws + (int64_t)a.bodies.material[pair.i] * a.num_materials + a.bodies.material[pair.j];
+
+    // what is known of the contact, its history included
+    scree_contact_kinematics k;
+    k.volume = a.contacts.volume[c];
+    k.indentation = a.contacts.indentation[c];
+    k.normal = a.contacts.normal[c];
+    k.relative_velocity = scree_relative_velocity(&a.bodies, pair.i, pair.j, a.contacts.arm[c]);
+    k.effective_mass = 1 / (a.bodies.inverse_mass[pair.i] + a.bodies.inverse_mass[pair.j]);
+    k.time_step = a.time_step;
+    k.spring_force = scree_vec3_zero();
+    k.tangential_stiffness = 0;
+    scree_real elastic_energy = 0;
+    const int64_t old = a.old_of_contact[c];
+    if (old >= 0)
+    {
+        k.spring_force = a.old_contacts.spring_force[old];
+        k.tangential_stiffness = a.old_contacts.tangential_stiffness[old];
+        elastic_energy = a.old_contacts.elastic_energy[old];
+    }
+
+    scree_contact_force f;
+    scree_volumetric_force(law, &k, &f);
+
+    a.contacts.normal_force[c] = f.normal_force;
+    a.contacts.tangential_force[c] = f.tangential_force;
+    a.contacts.elastic_force[c] = f.elastic_force;
+    a.contacts.is_slipping[c] = f.is_slipping ? 1 : 0;
+    a.contacts.spring_force[c] = f.spring_force;
+    a.contacts.tangential_stiffness[c] = f.tangential_stiffness;
+    a.contacts.elastic_energy[c] = elastic_energy;
+    a.contacts.spring_work[c] = scree_spring_energy(f.spring_force, f.tangential_stiffness) -
+                                scree_spring_energy(k.spring_force, k.tangential_stiffness);
+}
+
+#endif

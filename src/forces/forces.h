@@ -1,0 +1,15 @@
+/// \file forces.h
+/// Host side of the force stage: contact forces, their gathering to particles, their work.
+#ifndef SCREE_FORCES_H
+#define SCREE_FORCES_H
+
+#include "core/launch_cpu.h"
+#include "forces/contact_force_kernel.h"
+#include "forces/gather_kernel.h"
+#include "forces/work_kernel.h"
+
+SCREE_DECLARE_LAUNCH(scree_contact_force) ///< over contacts
+SCREE_DECLARE_LAUNCH(scree_gather)        ///< over particles
+SCREE_DECLARE_LAUNCH(scree_work)          ///< over blocks of SCREE_WORK_BLOCK contacts
+
+#endif

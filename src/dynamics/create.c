@@ -1,0 +1,299 @@
+/// \file create.c
+/// A scene to a simulation at time 0. The scene's own faults (ranges, names) have been refused by its reader; what only
+/// shows with meshes and particles in place is refused here.
+#include "dynamics/populate.h"
+#include "dynamics/step_buffers.h"
+#include "dynamics/time_step.h"
+#include "polyhedra/generate.h"
+#include "polyhedra/import.h"
+#include "polyhedra/simplify.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int32_t find_material(const scree_scene *scene, const char *name)
+{
+    for (uint32_t k = 0; k < scene->num_materials; ++k)
+        if (strcmp(scene->materials[k].name, name) == 0) return (int32_t)k;
+    return -1;
+}
+
+static int32_t find_shape(const scree_scene *scene, const char *name)
+{
+    for (uint32_t k = 0; k < scene->num_shapes; ++k)
+        if (strcmp(scene->shapes[k].name, name) == 0) return (int32_t)k;
+    return -1;
+}
+
+/// Names that the scene's reader has resolved already; checked again so that a scene made in C cannot crash.
+static scree_status check_names(const scree_scene *scene, scree_report *report)
+{
+    const int before = scree_report_num_faults(report);
+    bool is_complete = true;
+    for (uint32_t g = 0; g < scene->num_particles; ++g)
+    {
+        const scree_particle_group_def *def = scene->particles + g;
+        if (find_shape(scene, def->shape) >= 0 && find_material(scene, def->material) >= 0) continue;
+        scree_report_add(report, "particles \"%s\": no shape \"%s\" or no material \"%s\" in the scene", def->name,
+                         def->shape, def->material);
+        is_complete = false;
+    }
+    for (uint32_t w = 0; w < scene->num_walls; ++w)
+    {
+        const scree_wall_def *def = scene->walls + w;
+        if (find_shape(scene, def->shape) >= 0 && find_material(scene, def->material) >= 0) continue;
+        scree_report_add(report, "wall \"%s\": no shape \"%s\" or no material \"%s\" in the scene", def->name,
+                         def->shape, def->material);
+        is_complete = false;
+    }
+    return is_complete && scree_report_num_faults(report) == before ? SCREE_OK : SCREE_INVALID_INPUT;
+}
+
+/// Mesh of a shape definition, in its source frame.
+static scree_status make_mesh(scree_mesh *mesh, const scree_shape_def *def, const char *folder, scree_report *report)
+{
+    const double diameter = def->size[0];
+    scree_status status = SCREE_INVALID_INPUT;
+    switch (def->source)
+    {
+    case SCREE_SHAPE_BOX:
+        return scree_generate_box(mesh, def->size);
+    case SCREE_SHAPE_TETRAHEDRON:
+        return scree_generate_tetrahedron(mesh, 0.5 * diameter);
+    case SCREE_SHAPE_SCHOENHARDT:
+        return scree_generate_schoenhardt(mesh, 0.5 * diameter);
+    case SCREE_SHAPE_SPHERE:
+        return scree_generate_sphere(mesh, 0.5 * diameter, (int32_t)def->triangles);
+    case SCREE_SHAPE_ROCK:
+        status = scree_generate_rock(mesh, (uint64_t)def->seed, (int32_t)def->triangles, 0);
+        for (int32_t v = 0; v < mesh->num_vertices; ++v)
+            mesh->vertices[v] = scree_vec3_scale(mesh->vertices[v], (scree_real)diameter);
+        return status;
+    case SCREE_SHAPE_FILE:
+        break;
+    }
+    char path[4096];
+    const bool is_absolute = def->file[0] == '/';
+    const int length =
+        snprintf(path, sizeof path, "%s%s%s", is_absolute ? "" : folder, is_absolute ? "" : "/", def->file);
+    if (length < 0 || (size_t)length >= sizeof path)
+    {
+        scree_report_add(report, "shape \"%s\": the path of its file has more than %zu characters", def->name,
+                         sizeof path - 1);
+        return SCREE_INVALID_INPUT;
+    }
+    status = scree_mesh_import(mesh, path, report);
+    if (status == SCREE_OK && def->triangles > 0 && def->triangles < mesh->num_triangles)
+        status = scree_mesh_simplify(mesh, (int32_t)def->triangles, 0, report);
+    return status;
+}
+
+/// Shapes in the frames they are used in: principal for particles, source for walls.
+static scree_status make_shapes(scree_simulation *s, const char *folder, scree_report *report)
+{
+    const scree_scene *scene = s->scene;
+    scree_status worst = SCREE_OK;
+    for (int32_t k = 0; k < s->num_shapes; ++k)
+    {
+        bool is_particle = false, is_wall = false;
+        for (uint32_t g = 0; g < scene->num_particles; ++g)
+            is_particle |= find_shape(scene, scene->particles[g].shape) == k;
+        for (uint32_t w = 0; w < scene->num_walls; ++w) is_wall |= find_shape(scene, scene->walls[w].shape) == k;
+        if (!is_particle && !is_wall) continue;
+
+        scree_mesh mesh = {0};
+        scree_status status = make_mesh(&mesh, scene->shapes + k, folder, report);
+        if (status == SCREE_OK && is_particle)
+            status = scree_shape_create(s->particle_shapes + k, &mesh, SCREE_FRAME_PRINCIPAL);
+        if (status == SCREE_OK && is_wall) status = scree_shape_create(s->wall_shapes + k, &mesh, SCREE_FRAME_SOURCE);
+        scree_mesh_destroy(&mesh);
+        if (status != SCREE_OK)
+        {
+            scree_report_add(report, "shape \"%s\" could not be made: %s", scene->shapes[k].name,
+                             scree_status_text(status));
+            worst = status;
+        }
+        s->shape_views[k] = s->particle_shapes[k].view;
+        s->shape_views[s->num_shapes + k] = s->wall_shapes[k].view;
+    }
+    return worst;
+}
+
+/// Laws of all pairs of materials that the scene gives one.
+static scree_status make_laws(scree_simulation *s, scree_report *report)
+{
+    const scree_scene *scene = s->scene;
+    for (uint32_t k = 0; k < scene->num_contact_laws; ++k)
+    {
+        const scree_contact_law_def *def = scene->contact_laws + k;
+        const int32_t a = find_material(scene, def->materials[0]), b = find_material(scene, def->materials[1]);
+        scree_force_law law;
+        if (a < 0 || b < 0 || scree_force_law_make(def, scene->materials + a, scene->materials + b, &law) != SCREE_OK)
+        {
+            scree_report_add(report, "contact_laws.%u: no material \"%s\" or \"%s\", or no force model \"%s\"", k,
+                             def->materials[0], def->materials[1], def->model);
+            return SCREE_INVALID_INPUT;
+        }
+        s->laws[a * s->num_materials + b] = law;
+        s->laws[b * s->num_materials + a] = law;
+    }
+    return SCREE_OK;
+}
+
+static scree_status allocate(scree_simulation *s)
+{
+    const scree_scene *scene = s->scene;
+    s->num_shapes = (int32_t)scene->num_shapes;
+    s->num_materials = (int32_t)scene->num_materials;
+    s->num_walls = (int32_t)scene->num_walls;
+    s->particle_shapes = calloc(scene->num_shapes + 1, sizeof *s->particle_shapes);
+    s->wall_shapes = calloc(scene->num_shapes + 1, sizeof *s->wall_shapes);
+    s->shape_views = calloc(2 * (size_t)scene->num_shapes + 1, sizeof *s->shape_views);
+    s->laws = calloc((size_t)scene->num_materials * scene->num_materials + 1, sizeof *s->laws);
+    s->walls = calloc((size_t)scene->num_walls + 1, sizeof *s->walls);
+    for (uint32_t w = 0; s->walls != NULL && w < scene->num_walls; ++w)
+    {
+        s->walls[w].shape = find_shape(scene, scene->walls[w].shape);
+        s->walls[w].material = find_material(scene, scene->walls[w].material);
+    }
+    const bool is_complete = s->particle_shapes != NULL && s->wall_shapes != NULL && s->shape_views != NULL &&
+                             s->laws != NULL && s->walls != NULL;
+    return is_complete ? SCREE_OK : SCREE_OUT_OF_MEMORY;
+}
+
+/// Skin as a share of the mean bounding radius.
+static scree_real choose_skin(const scree_simulation *s)
+{
+    const scree_particles *p = &s->particles;
+    double sum = 0;
+    for (int64_t i = 0; i < p->num_particles; ++i)
+        sum += s->particle_shapes[p->shape[i]].properties.bounding_radius * (double)p->scale[i];
+    return (scree_real)(p->num_particles > 0 ? s->scene->solver.skin * sum / (double)p->num_particles : 0);
+}
+
+/// Bodies that start deeper inside each other than any contact law is meant for.
+#define SCREE_MAX_INITIAL_INDENTATION 0.05
+
+static scree_status check_initial_contacts(const scree_simulation *s, scree_report *report)
+{
+    const scree_contact_list *contacts = &s->contacts;
+    const int32_t num_particles = (int32_t)s->particles.num_particles;
+    int64_t num_deep = 0;
+    for (int64_t c = 0; c < contacts->num_contacts; ++c)
+    {
+        const scree_candidate_pair pair = contacts->bodies[c];
+        const double size = s->particle_shapes[s->particles.shape[pair.i]].properties.bounding_radius *
+                            (double)s->particles.scale[pair.i];
+        if ((double)contacts->indentation[c] <= SCREE_MAX_INITIAL_INDENTATION * size) continue;
+        if (++num_deep > 5) continue;
+        const scree_vec3 x = s->particles.position[pair.i];
+        char other[300];
+        if (pair.j < num_particles) snprintf(other, sizeof other, "particle %d", pair.j);
+        else snprintf(other, sizeof other, "wall \"%.200s\"", s->scene->walls[pair.j - num_particles].name);
+        scree_report_add(
+            report,
+            "particle %d of \"%s\" at (%g, %g, %g) starts %g m inside %s, more than %g of its bounding radius; "
+            "move one of them or the region of the particles",
+            pair.i, s->scene->particles[s->particles.group[pair.i]].name, (double)x.x, (double)x.y, (double)x.z,
+            (double)contacts->indentation[c], other, SCREE_MAX_INITIAL_INDENTATION);
+    }
+    if (num_deep > 5) scree_report_add(report, "%lld more particles start inside others", (long long)(num_deep - 5));
+    return num_deep > 0 ? SCREE_INVALID_INPUT : SCREE_OK;
+}
+
+/// Contacts and forces of time 0.
+static scree_status start(scree_simulation *s, scree_report *report)
+{
+    s->buffers->skin = choose_skin(s);
+    s->counters.smallest_critical_step = INFINITY;
+    s->narrow_phase.options.scheme =
+        strcmp(s->scene->solver.overlap_scheme, "hierarchy") == 0 ? SCREE_OVERLAP_HIERARCHY : SCREE_OVERLAP_FILTERED;
+    s->narrow_phase.options.separate_patches = s->scene->solver.separate_patches;
+    s->narrow_phase.options.use_convex_path = true;
+    scree_place_walls(s, 0);
+    scree_place_particles(s);
+    scree_status status = scree_update_neighbours(s);
+    if (status == SCREE_OK) status = scree_update_contacts(s);
+    if (status == SCREE_OK) status = check_initial_contacts(s, report);
+    if (status == SCREE_OK) status = scree_update_forces(s);
+    return status;
+}
+
+static scree_status choose_time_step(scree_simulation *s, scree_report *report)
+{
+    const scree_time_def *time = &s->scene->time;
+    const double critical = scree_time_step_critical(s);
+    s->time_step = isnan(time->step) ? time->step_fraction * critical : time->step;
+    if (isfinite(s->time_step) && s->time_step > 0)
+    {
+        if (s->time_step > critical)
+            scree_report_warn(report,
+                              "time.step of %g s exceeds the critical step of %g s that the stiffest contact to "
+                              "expect allows; choose a smaller one, or auto",
+                              s->time_step, critical);
+        return SCREE_OK;
+    }
+    scree_report_add(report,
+                     "time.step is auto, but there are no particles whose contacts could give it; set time.step");
+    return SCREE_INVALID_INPUT;
+}
+
+scree_status scree_simulation_create(scree_simulation **simulation, const scree_scene *scene, const char *folder,
+                                     scree_report *report)
+{
+    *simulation = NULL;
+    scree_status status = check_names(scene, report);
+    if (status != SCREE_OK) return status;
+    scree_simulation *s = calloc(1, sizeof *s);
+    if (s == NULL) return SCREE_OUT_OF_MEMORY;
+    s->scene = scene;
+    status = allocate(s);
+    if (status == SCREE_OK) status = make_laws(s, report);
+    if (status == SCREE_OK) status = make_shapes(s, folder, report);
+    if (status == SCREE_OK) status = scree_populate(s, report);
+    if (status == SCREE_OK) status = choose_time_step(s, report);
+    if (status == SCREE_OK) status = scree_step_buffers_create(s);
+    if (status == SCREE_OK) status = start(s, report);
+    if (status != SCREE_OK)
+    {
+        if (scree_report_num_faults(report) == 0) scree_report_add(report, "%s", scree_status_text(status));
+        scree_simulation_destroy(s);
+        return status;
+    }
+    *simulation = s;
+    return SCREE_OK;
+}
+
+scree_status scree_simulation_restored(scree_simulation *simulation, scree_report *report)
+{
+    // the contacts that were read become the old list; the next step finds its own and their history by key
+    scree_place_walls(simulation, scree_simulation_time(simulation));
+    scree_place_particles(simulation);
+    simulation->buffers->has_pairs = false;
+    simulation->buffers->is_old_list_of_same_pairs = false;
+    return scree_contact_list_validate(&simulation->contacts, report) ? SCREE_OK : SCREE_INVALID_INPUT;
+}
+
+void scree_simulation_destroy(scree_simulation *simulation)
+{
+    if (simulation == NULL) return;
+    for (int32_t k = 0; k < simulation->num_shapes; ++k)
+    {
+        if (simulation->particle_shapes != NULL) scree_shape_destroy(simulation->particle_shapes + k);
+        if (simulation->wall_shapes != NULL) scree_shape_destroy(simulation->wall_shapes + k);
+    }
+    scree_step_buffers_destroy(simulation);
+    scree_particles_destroy(&simulation->particles);
+    scree_contact_list_destroy(&simulation->contacts);
+    scree_contact_list_destroy(&simulation->old_contacts);
+    scree_broad_phase_destroy(&simulation->broad_phase);
+    scree_narrow_phase_destroy(&simulation->narrow_phase);
+    free(simulation->particle_shapes);
+    free(simulation->wall_shapes);
+    free(simulation->shape_views);
+    free(simulation->laws);
+    free(simulation->walls);
+    free(simulation);
+}

@@ -1,0 +1,50 @@
+/// \file neighbour_kernel.h
+/// Boxes with skin, and how far a body has moved since they were made.
+#ifndef SCREE_NEIGHBOUR_KERNEL_H
+#define SCREE_NEIGHBOUR_KERNEL_H
+
+#include "polyhedra/shape.h"
+
+typedef struct scree_boxes_args
+{
+    const scree_shape_view *shapes; ///< all shapes
+    const int32_t *shape;           ///< (num_particles)
+    const scree_pose *pose;         ///< (num_particles)
+    scree_real skin;                ///< [m]
+    scree_box *boxes;               ///< (num_particles) out
+    scree_vec3 *centres;            ///< (num_particles) out
+    scree_real *radii;              ///< (num_particles) out, with skin
+} scree_boxes_args;
+
+/// Box of the vertices of particle i, and its bounding sphere, both with skin.
+SCREE_FN void scree_boxes_at(scree_boxes_args a, int64_t i)
+{
+    const scree_shape_view *shape = a.shapes + a.shape[i];
+    const scree_pose pose = a.pose[i];
+    const scree_mat3 rotation = scree_mat3_from_quat(pose.orientation);
+    scree_box box = scree_box_empty();
+    for (int32_t v = 0; v < shape->num_vertices; ++v)
+        box = scree_box_with_point(box, scree_mat3_apply(rotation, shape->vertices[v]));
+
+    // a few roundings of the rotation, the scaling and the sums
+    const scree_real radius = shape->bounding_radius * pose.scale;
+    const scree_real margin =
+        a.skin + 16 * SCREE_REAL_EPSILON *
+                     (radius + scree_abs(pose.position.x) + scree_abs(pose.position.y) + scree_abs(pose.position.z));
+    const scree_vec3 around = scree_vec3_make(margin, margin, margin);
+    a.boxes[i].lower = scree_vec3_sub(scree_vec3_add_scaled(pose.position, box.lower, pose.scale), around);
+    a.boxes[i].upper = scree_vec3_add(scree_vec3_add_scaled(pose.position, box.upper, pose.scale), around);
+    a.centres[i] = pose.position;
+    a.radii[i] = radius + margin;
+}
+
+/// Upper bound of how far any point within `radius` of the position has moved from one pose to the other:
+/// |x1 - x0| + 2 sin(angle/2) radius.
+SCREE_FN scree_real scree_displacement(scree_pose from, scree_pose to, scree_real radius)
+{
+    const scree_quat turn = scree_quat_multiply(to.orientation, scree_quat_conjugate(from.orientation));
+    const scree_real sine = scree_sqrt(turn.x * turn.x + turn.y * turn.y + turn.z * turn.z);
+    return scree_vec3_length(scree_vec3_sub(to.position, from.position)) + 2 * sine * radius;
+}
+
+#endif

@@ -1,0 +1,62 @@
+/// \file plan.c
+/// The stages that a scene needs, why, and what they cost in memory.
+#include "dynamics/step_buffers.h"
+
+#include <stdio.h>
+
+/// Bytes of one particle in each group of arrays.
+static const size_t bytes_moving = 4 * sizeof(scree_vec3) + sizeof(scree_quat) + sizeof(scree_vec3);
+static const size_t bytes_constant = 2 * sizeof(scree_real) + sizeof(scree_vec3) + 3 * sizeof(int32_t);
+static const size_t bytes_search =
+    2 * sizeof(scree_pose) + sizeof(scree_box) + sizeof(scree_vec3) + sizeof(scree_real) + 2 * sizeof(scree_lbvh_node);
+static const size_t bytes_contact =
+    2 * (sizeof(scree_candidate_pair) + sizeof(int32_t) + 5 * sizeof(scree_real) + 7 * sizeof(scree_vec3) + 1) +
+    sizeof(int64_t) + 1;
+static const size_t bytes_pair = sizeof(scree_candidate_pair) + 2 * sizeof(int32_t) + 2 * sizeof(int64_t) +
+                                 sizeof(scree_overlap_result) + sizeof(int32_t);
+
+static void print_stage(FILE *out, const char *stage, const char *why, size_t bytes, const char *per)
+{
+    fprintf(out, "  %-22s %-62s", stage, why);
+    if (bytes > 0) fprintf(out, " %4zu B/%s", bytes, per);
+    fputc('\n', out);
+}
+
+void scree_simulation_print_plan(const scree_simulation *simulation, void *stream)
+{
+    FILE *out = stream;
+    const scree_simulation *s = simulation;
+    bool has_spring = false, has_damping = false, is_moving = false;
+    for (int32_t k = 0; k < s->num_materials * s->num_materials; ++k)
+    {
+        has_spring |= s->laws[k].has_tangential_spring && s->laws[k].friction_coefficient > 0;
+        has_damping |= s->laws[k].damping_ratio > 0;
+    }
+    for (int32_t w = 0; w < s->num_walls; ++w) is_moving |= s->scene->walls[w].motion.kind != SCREE_MOTION_FIXED;
+    char text[96];
+
+    fprintf(out, "plan of \"%s\": %lld particles, %d walls, %lld steps of %.4g s\n", s->scene->name,
+            (long long)s->particles.num_particles, s->num_walls, (long long)scree_simulation_num_steps(s),
+            s->time_step);
+    print_stage(out, "predict", "velocity Verlet, implicit midpoint rotation", bytes_moving + bytes_constant,
+                "particle");
+    if (is_moving) print_stage(out, "walls", "some walls move as prescribed", 0, "");
+    snprintf(text, sizeof text, "LBVH over boxes with a skin of %.3g m; reused until it is used up",
+             (double)s->buffers->skin);
+    print_stage(out, "neighbours", text, bytes_search, "particle");
+    print_stage(out, "", "candidate pairs with their overlaps and rows", bytes_pair, "pair");
+    snprintf(text, sizeof text, "polyhedra: exact overlap, %s scheme, %s", s->scene->solver.overlap_scheme,
+             s->scene->solver.separate_patches ? "a contact per patch" : "a contact per pair");
+    print_stage(out, "narrow phase", text, bytes_contact, "contact");
+    snprintf(text, sizeof text, "volumetric Hertz-Mindlin%s%s", has_damping ? ", damping" : "",
+             has_spring ? ", tangential spring with history" : ", no tangential spring");
+    print_stage(out, "forces", text, 0, "");
+    print_stage(out, "gather", "per particle over its row of contacts, in fixed order", 0, "");
+    print_stage(out, "correct", "second half kick", 0, "");
+    print_stage(out, "work", "energy balance and critical time step", 0, "");
+    const double particles =
+        (double)s->particles.num_particles * (double)(bytes_moving + bytes_constant + bytes_search);
+    const double pairs = (double)s->broad_phase.num_pairs * (double)(bytes_pair + bytes_contact);
+    fprintf(out, "  memory now about %.3g MB for %lld candidate pairs, all of them as contacts\n",
+            (particles + pairs) / 1e6, (long long)s->broad_phase.num_pairs);
+}

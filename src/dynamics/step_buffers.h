@@ -1,0 +1,58 @@
+/// \file step_buffers.h
+/// Scratch of the step and the arrays over all bodies: particles first, then walls. Internal to dynamics.
+#ifndef SCREE_STEP_BUFFERS_H
+#define SCREE_STEP_BUFFERS_H
+
+#include "dynamics/state.h"
+#include "forces/forces.h"
+
+typedef struct scree_step_buffers
+{
+    // per body (num_bodies)
+    scree_pose *pose;
+    scree_vec3 *velocity;
+    scree_vec3 *angular_velocity;
+    scree_real *inverse_mass;
+    int32_t *shape; ///< index into shape_views
+    int32_t *material;
+
+    // neighbours
+    scree_pose *searched_pose;                 ///< (num_bodies) poses of the last search
+    scree_box *boxes;                          ///< (num_particles)
+    scree_vec3 *centres;                       ///< (num_particles)
+    scree_real *radii;                         ///< (num_particles)
+    scree_broad_phase_wall *broad_phase_walls; ///< (num_walls)
+    scree_real skin;                           ///< [m]
+    bool has_pairs;                            ///< false: search before the next step
+
+    // contacts
+    bool is_old_list_of_same_pairs; ///< old contacts can be found by the index of their candidate pair
+    int64_t *old_of_contact;
+    int64_t max_contacts;
+    uint8_t *is_continued;
+    int64_t max_old;
+    scree_work_sums *work_sums;
+    int64_t max_work_blocks;
+} scree_step_buffers;
+
+/// Allocates the arrays over bodies; num_walls from the simulation.
+scree_status scree_step_buffers_create(scree_simulation *simulation);
+void scree_step_buffers_destroy(scree_simulation *simulation);
+
+/// Poses and velocities of the walls at `time`, to the wall states and the body arrays.
+void scree_place_walls(scree_simulation *simulation, double time);
+/// Poses and velocities of the particles, as they are, to the body arrays.
+void scree_place_particles(scree_simulation *simulation);
+
+/// Searches candidate pairs if some body may have left its skin since the last search.
+scree_status scree_update_neighbours(scree_simulation *simulation);
+/// Contacts of the present poses and which old ones they continue; old ones that ended leave their energy to the sums.
+scree_status scree_update_contacts(scree_simulation *simulation);
+/// Forces of the contacts and of gravity on the particles.
+scree_status scree_update_forces(scree_simulation *simulation);
+/// Work of the contacts over the step just done.
+scree_status scree_account_work(scree_simulation *simulation);
+
+scree_body_motion scree_step_body_motion(const scree_step_buffers *buffers);
+
+#endif

@@ -1,0 +1,25 @@
+#include "dynamics/time_step.h"
+
+#include <math.h>
+
+double scree_time_step_critical(const scree_simulation *simulation)
+{
+    const scree_particles *p = &simulation->particles;
+    double smallest_squared = INFINITY;
+    for (int64_t i = 0; i < p->num_particles; ++i)
+    {
+        const scree_shape *shape = simulation->particle_shapes + p->shape[i];
+        const double contact_radius = 0.5 * shape->properties.bounding_radius * (double)p->scale[i];
+        double stiffness = 0;
+        for (int32_t m = 0; m < simulation->num_materials; ++m)
+        {
+            // a pair of materials that cannot meet has no law, and so no stiffness
+            const scree_force_law *law = simulation->laws + p->material[i] * simulation->num_materials + m;
+            const double normal = 2 * (double)law->effective_modulus * contact_radius;
+            const double tangential = 8 * (double)law->effective_shear_modulus * contact_radius;
+            stiffness = fmax(stiffness, fmax(normal, tangential));
+        }
+        smallest_squared = fmin(smallest_squared, (double)p->mass[i] / (3.5 * stiffness));
+    }
+    return sqrt(smallest_squared);
+}

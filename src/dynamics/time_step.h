@@ -1,0 +1,13 @@
+/// \file time_step.h
+/// The automatic time step.
+#ifndef SCREE_TIME_STEP_H
+#define SCREE_TIME_STEP_H
+
+#include "dynamics/state.h"
+
+/// Smallest sqrt(m_eff/k) [s] to expect: over all particles and all materials they can meet, with a flat contact of
+/// half the bounding radius (k = 2 E* a, a = R/2) and the rotation of the particle taken into account by m_eff = m/3.5,
+/// the value of a sphere hit tangentially. A run counts the true one; see scree_counters.
+double scree_time_step_critical(const scree_simulation *simulation);
+
+#endif

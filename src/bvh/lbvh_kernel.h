@@ -9,6 +9,7 @@
 #define SCREE_LBVH_END (-1)
 
 /// One node. A hit goes on with first_child, a miss or a leaf with escape (Prokopenko & Lebrun-Grandie 2024).
+/// Nodes are stored depth first, so the first child of node k is k + 1, and so is the escape of a leaf that has one.
 typedef struct scree_lbvh_node
 {
     scree_box box;
@@ -31,13 +32,17 @@ SCREE_FN int32_t scree_lbvh_next_overlap(scree_lbvh_view tree, scree_box query, 
     while (k != SCREE_LBVH_END)
     {
         const scree_lbvh_node *node = tree.nodes + k;
-        if (!scree_box_overlaps(node->box, query)) k = node->escape;
-        else if (node->first_child >= 0) k = node->first_child;
-        else
+        if (!scree_box_overlaps(node->box, query))
+        {
+            k = node->escape;
+            continue;
+        }
+        if (node->first_child < 0)
         {
             *next = node->escape;
             return -1 - node->first_child;
         }
+        ++k;
     }
     *next = SCREE_LBVH_END;
     return -1;

@@ -1,0 +1,191 @@
+/// \file lbvh.c
+/// Order of a build: bounds of the middles, Morton codes, sort, hierarchy, nodes, boxes from the leaves upwards.
+/// Linear in the number of boxes; about 190 bytes per box, nodes included.
+#include "bvh/lbvh.h"
+
+#include "bvh/bvh_launch.h"
+#include "core/buffer.h"
+#include "core/sort.h"
+
+#include <stdlib.h>
+
+enum
+{
+    MAX_LEAVES = 1 << 30 ///< 2 num_leaves - 1 nodes must have an int32_t index
+};
+
+struct scree_lbvh_buffers
+{
+    scree_lbvh_build_args arrays; ///< all but boxes, codes and items is owned
+    scree_sort_buffers sort;
+    int64_t max_leaves;
+};
+
+static void destroy_arrays(scree_lbvh_build_args *arrays)
+{
+    free(arrays->first_leaf);
+    free(arrays->last_leaf);
+    free(arrays->num_left_turns);
+    free(arrays->nodes);
+    free(arrays->parents);
+    free(arrays->arrivals);
+    free(arrays->chunk_bounds);
+    *arrays = (scree_lbvh_build_args){0};
+}
+
+void scree_lbvh_destroy(scree_lbvh *tree)
+{
+    if (tree->buffers != NULL)
+    {
+        destroy_arrays(&tree->buffers->arrays);
+        scree_sort_destroy(&tree->buffers->sort);
+        free(tree->buffers);
+    }
+    *tree = (scree_lbvh){.view = {NULL, 0, SCREE_LBVH_END}};
+}
+
+/// Room for num_leaves; refused with the tree as it was.
+static scree_status reserve(scree_lbvh *tree, int64_t num_leaves)
+{
+    if (num_leaves > MAX_LEAVES) return SCREE_TOO_MANY;
+    if (tree->buffers == NULL) tree->buffers = calloc(1, sizeof *tree->buffers);
+    if (tree->buffers == NULL) return SCREE_OUT_OF_MEMORY;
+    struct scree_lbvh_buffers *b = tree->buffers;
+    if (scree_sort_reserve(&b->sort, num_leaves, true) != SCREE_OK) return SCREE_OUT_OF_MEMORY;
+    if (num_leaves <= b->max_leaves) return SCREE_OK;
+
+    const bool is_first = b->max_leaves == 0;
+    const int64_t max_leaves = is_first ? num_leaves : scree_buffer_grown(num_leaves);
+    scree_lbvh_build_args grown = {0};
+    grown.first_leaf = scree_buffer_alloc(max_leaves, sizeof *grown.first_leaf);
+    grown.last_leaf = scree_buffer_alloc(max_leaves, sizeof *grown.last_leaf);
+    grown.num_left_turns = scree_buffer_alloc(max_leaves, sizeof *grown.num_left_turns);
+    grown.nodes = scree_buffer_alloc(2 * max_leaves, sizeof *grown.nodes);
+    grown.parents = scree_buffer_alloc(2 * max_leaves, sizeof *grown.parents);
+    grown.arrivals = scree_buffer_alloc(2 * max_leaves, sizeof *grown.arrivals);
+    grown.chunk_bounds = scree_buffer_alloc(SCREE_LBVH_BOUNDS_CHUNKS, sizeof *grown.chunk_bounds);
+    if (grown.first_leaf == NULL || grown.last_leaf == NULL || grown.num_left_turns == NULL || grown.nodes == NULL ||
+        grown.parents == NULL || grown.arrivals == NULL || grown.chunk_bounds == NULL)
+    {
+        destroy_arrays(&grown);
+        return SCREE_OUT_OF_MEMORY;
+    }
+    // the kernels leave the arrivals at 0, so this is done once
+    for (int64_t k = 0; k < 2 * max_leaves; ++k) grown.arrivals[k] = 0;
+    destroy_arrays(&b->arrays);
+    b->arrays = grown;
+    b->max_leaves = max_leaves;
+    return SCREE_OK;
+}
+
+static scree_box bound_middles(scree_lbvh_build_args args)
+{
+    scree_lbvh_bounds_launch(args, SCREE_LBVH_BOUNDS_CHUNKS);
+    scree_box bounds = scree_box_empty();
+    for (int c = 0; c < SCREE_LBVH_BOUNDS_CHUNKS; ++c) bounds = scree_box_union(bounds, args.chunk_bounds[c]);
+    return bounds;
+}
+
+scree_status scree_lbvh_build(scree_lbvh *tree, const scree_box *boxes, int64_t num_boxes)
+{
+    const scree_status status = reserve(tree, num_boxes);
+    if (status != SCREE_OK) return status;
+    struct scree_lbvh_buffers *b = tree->buffers;
+    tree->view.nodes = num_boxes > 0 ? b->arrays.nodes : NULL;
+    tree->view.num_leaves = (int32_t)num_boxes;
+    tree->view.root = num_boxes > 0 ? 0 : SCREE_LBVH_END;
+    if (num_boxes == 0) return SCREE_OK;
+
+    scree_lbvh_build_args args = b->arrays;
+    args.boxes = boxes;
+    args.num_leaves = num_boxes;
+    args.bounds = bound_middles(args);
+    args.codes = b->sort.keys;
+    args.items = b->sort.values;
+    scree_lbvh_codes_launch(args, num_boxes);
+    scree_sort(&b->sort, num_boxes);
+    args.codes = b->sort.keys;
+    args.items = b->sort.values;
+    scree_lbvh_hierarchy_launch(args, num_boxes - 1);
+    scree_lbvh_left_turns_launch(args, num_boxes);
+    scree_lbvh_leaves_launch(args, num_boxes);
+    scree_lbvh_inner_nodes_launch(args, num_boxes - 1);
+    scree_lbvh_refit_launch(args, num_boxes);
+    return SCREE_OK;
+}
+
+void scree_lbvh_refit(scree_lbvh *tree, const scree_box *boxes)
+{
+    if (tree->view.num_leaves == 0) return;
+    scree_lbvh_build_args args = tree->buffers->arrays;
+    args.boxes = boxes;
+    args.num_leaves = tree->view.num_leaves;
+    scree_lbvh_refit_launch(args, args.num_leaves);
+}
+
+/// Smallest number that is wrong about node k, as text; NULL if all is well.
+static const char *find_fault(const scree_lbvh_node *nodes, int32_t k, int32_t end, const scree_box *boxes)
+{
+    const scree_lbvh_node *node = nodes + k;
+    const int32_t next = node->escape == SCREE_LBVH_END ? end : node->escape;
+    if (node->first_child < 0)
+    {
+        if (next != k + 1) return "is a leaf, but its escape is not the next node";
+        const scree_box box = boxes[-1 - node->first_child], own = node->box;
+        const bool is_same = own.lower.x == box.lower.x && own.lower.y == box.lower.y && own.lower.z == box.lower.z &&
+                             own.upper.x == box.upper.x && own.upper.y == box.upper.y && own.upper.z == box.upper.z;
+        return is_same ? NULL : "is a leaf, but does not have the box of its item";
+    }
+    if (node->first_child != k + 1 || k + 1 >= end) return "does not have the next node as its first child";
+    const int32_t right = nodes[k + 1].escape;
+    if (right <= k + 1 || right >= end) return "has a first child that does not escape to a second one";
+    if ((nodes[right].escape == SCREE_LBVH_END ? end : nodes[right].escape) != next)
+        return "has a second child that does not escape to where the node does";
+    const scree_box both = scree_box_union(nodes[k + 1].box, nodes[right].box), own = node->box;
+    const bool is_tight = own.lower.x == both.lower.x && own.lower.y == both.lower.y && own.lower.z == both.lower.z &&
+                          own.upper.x == both.upper.x && own.upper.y == both.upper.y && own.upper.z == both.upper.z;
+    return is_tight ? NULL : "does not have the union of its children's boxes";
+}
+
+bool scree_lbvh_validate(const scree_lbvh *tree, const scree_box *boxes, int64_t num_boxes, scree_report *report)
+{
+    const int64_t num_nodes = num_boxes > 0 ? 2 * num_boxes - 1 : 0;
+    if (tree->view.num_leaves != num_boxes || tree->view.root != (num_boxes > 0 ? 0 : SCREE_LBVH_END))
+    {
+        scree_report_add(report, "tree: it has %d leaves and root %d for %lld boxes", tree->view.num_leaves,
+                         tree->view.root, (long long)num_boxes);
+        return false;
+    }
+    uint8_t *is_met = calloc((size_t)num_boxes + 1, 1);
+    if (is_met == NULL)
+    {
+        scree_report_add(report, "tree: not enough memory to check it");
+        return false;
+    }
+    bool is_valid = true;
+    for (int64_t k = 0; k < num_nodes && is_valid; ++k)
+    {
+        const int32_t item = -1 - tree->view.nodes[k].first_child;
+        const char *fault = NULL;
+        if (item >= num_boxes || (item >= 0 && is_met[item])) fault = "has an item that is out of range or met before";
+        else
+        {
+            if (item >= 0) is_met[item] = 1;
+            fault = find_fault(tree->view.nodes, (int32_t)k, (int32_t)num_nodes, boxes);
+        }
+        if (fault != NULL)
+            scree_report_add(report, "tree: node %lld of %lld %s", (long long)k, (long long)num_nodes, fault);
+        is_valid = fault == NULL;
+    }
+    // as many nodes as leaves need, each item at most once: if one is missing, a node must be wrong
+    int64_t num_met = 0;
+    for (int64_t i = 0; i < num_boxes; ++i) num_met += is_met[i];
+    if (is_valid && num_met != num_boxes)
+    {
+        scree_report_add(report, "tree: %lld of %lld boxes are in no leaf", (long long)(num_boxes - num_met),
+                         (long long)num_boxes);
+        is_valid = false;
+    }
+    free(is_met);
+    return is_valid;
+}

@@ -1,0 +1,9 @@
+#include "bvh/bvh_launch.h"
+
+SCREE_DEFINE_LAUNCH(scree_lbvh_bounds)
+SCREE_DEFINE_LAUNCH(scree_lbvh_codes)
+SCREE_DEFINE_LAUNCH(scree_lbvh_hierarchy)
+SCREE_DEFINE_LAUNCH(scree_lbvh_left_turns)
+SCREE_DEFINE_LAUNCH(scree_lbvh_leaves)
+SCREE_DEFINE_LAUNCH(scree_lbvh_inner_nodes)
+SCREE_DEFINE_LAUNCH(scree_lbvh_refit)

@@ -1,0 +1,71 @@
+#include "core/scan.h"
+
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+enum
+{
+    MAX_CHUNKS = 256,
+    MIN_CHUNK_VALUES = 16384 ///< smaller ones are not worth a thread
+};
+
+static int count_chunks(int64_t num_values)
+{
+    int64_t num_chunks = num_values / MIN_CHUNK_VALUES;
+#ifdef _OPENMP
+    if (num_chunks > omp_get_max_threads()) num_chunks = omp_get_max_threads();
+#else
+    num_chunks = 1;
+#endif
+    return num_chunks < 1 ? 1 : num_chunks > MAX_CHUNKS ? MAX_CHUNKS : (int)num_chunks;
+}
+
+/// First value of chunk c; without the overflow of num_values * c.
+static int64_t first_of_chunk(int64_t num_values, int num_chunks, int c)
+{
+    return num_values / num_chunks * c + num_values % num_chunks * c / num_chunks;
+}
+
+/// Exclusive sums of values[begin .. end), starting from `sum`; returns the sum after the last one.
+static int64_t scan_chunk(int64_t *values, int64_t begin, int64_t end, int64_t sum)
+{
+    for (int64_t i = begin; i < end; ++i)
+    {
+        const int64_t value = values[i];
+        values[i] = sum;
+        sum += value;
+    }
+    return sum;
+}
+
+int64_t scree_scan_exclusive(int64_t *values, int64_t num_values)
+{
+    const int num_chunks = count_chunks(num_values);
+    int64_t sums[MAX_CHUNKS];
+    if (num_chunks > 1)
+    {
+        // the sum of each chunk, then of all chunks before it
+#pragma omp parallel for schedule(static, 1) num_threads(num_chunks)
+        for (int c = 0; c < num_chunks; ++c)
+        {
+            int64_t sum = 0;
+            const int64_t end = first_of_chunk(num_values, num_chunks, c + 1);
+            for (int64_t i = first_of_chunk(num_values, num_chunks, c); i < end; ++i) sum += values[i];
+            sums[c] = sum;
+        }
+        scan_chunk(sums, 0, num_chunks, 0);
+    }
+    else sums[0] = 0;
+
+    int64_t total = 0;
+#pragma omp parallel for schedule(static, 1) num_threads(num_chunks)
+    for (int c = 0; c < num_chunks; ++c)
+    {
+        const int64_t sum = scan_chunk(values, first_of_chunk(num_values, num_chunks, c),
+                                       first_of_chunk(num_values, num_chunks, c + 1), sums[c]);
+        if (c == num_chunks - 1) total = sum;
+    }
+    values[num_values] = total;
+    return total;
+}

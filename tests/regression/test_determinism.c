@@ -1,0 +1,64 @@
+// Same bits: for 1, 2 and 7 threads, for a search at every step, and the golden hash of a scene, which other compilers
+// must reproduce. Printed as "hash NAME VALUE" for comparison between builds.
+#include "dynamics/step_buffers.h"
+#include "scene_run.h"
+
+#include <omp.h>
+
+static const char scene_text[] =
+    "name: determinism\n"
+    "time: {end: 0.1, step: 5e-5}\n"
+    "materials:\n"
+    "  - {name: stone, density: 2500, youngs_modulus: 1e7, poisson_ratio: 0.25}\n"
+    "contact_laws: [{materials: [stone, stone], friction_coefficient: 0.4, damping_ratio: 0.3}]\n"
+    "shapes:\n"
+    "  - {name: rock, source: rock, triangles: 40, seed: 3}\n"
+    "  - {name: schoenhardt, source: schoenhardt, size: [0.02, 0, 0]}\n"
+    "  - {name: floor, source: box, size: [0.3, 0.3, 0.02]}\n"
+    "particles:\n"
+    "  - {name: rocks, shape: rock, material: stone, count: 100, seed: 1, velocity: [0, 0, -1],\n"
+    "     size: {distribution: uniform, min: 0.01, max: 0.02},\n"
+    "     region: {min: [-0.1, -0.1, 0.001], max: [0.1, 0.1, 0.4]}}\n"
+    "  - {name: twisted, shape: schoenhardt, material: stone, count: 50, seed: 2, velocity: [0, 0, -3],\n"
+    "     region: {min: [-0.1, -0.1, 0.4], max: [0.1, 0.1, 0.8]}}\n"
+    "walls:\n"
+    "  - {name: floor, shape: floor, material: stone, position: [0, 0, -0.01],\n"
+    "     motion: {kind: translate, velocity: [0, 0, 0.2], start: 0.02, end: 0.05}}\n";
+
+/// Hash after the scene's end with so many threads; with `search_always` candidate pairs are found anew in every step.
+static uint64_t run_hash(int num_threads, bool search_always)
+{
+    omp_set_num_threads(num_threads);
+    scene_run run;
+    scene_run_start(&run, scene_text);
+    uint64_t hash = 0;
+    if (run.simulation != NULL)
+    {
+        for (int64_t k = scree_simulation_num_steps(run.simulation); k > 0; --k)
+        {
+            if (search_always) run.simulation->buffers->has_pairs = false;
+            SCREE_CHECK_INT(scree_simulation_step(run.simulation, &run.report), SCREE_OK);
+        }
+        SCREE_CHECK(run.simulation->contacts.num_contacts > 50);
+        hash = scree_simulation_hash(run.simulation);
+    }
+    scene_run_end(&run);
+    return hash;
+}
+
+static void test_any_number_of_threads(void)
+{
+    const uint64_t one = run_hash(1, false);
+    printf("hash rocks_and_schoenhardt %016llx\n", (unsigned long long)one);
+    SCREE_CHECK(run_hash(2, false) == one);
+    SCREE_CHECK(run_hash(7, false) == one);
+}
+
+static void test_reusing_pairs_changes_nothing(void) { SCREE_CHECK(run_hash(2, true) == run_hash(2, false)); }
+
+int main(void)
+{
+    SCREE_RUN(test_any_number_of_threads);
+    SCREE_RUN(test_reusing_pairs_changes_nothing);
+    return SCREE_TEST_END();
+}

@@ -1,0 +1,33 @@
+# Thin face on the CMake presets: every target works in a fresh clone.
+.PHONY: help setup build test demo studies format clean
+.DEFAULT_GOAL := help
+
+help:
+	@echo "make build     the program build/release/scree and the library"
+	@echo "make test      builds and runs every test"
+	@echo "make demo      a pile of rocks, with pictures, in runs/demo"
+	@echo "make studies   the studies in validation/"
+	@echo "make format    formats the sources"
+	@echo "make clean     removes build/"
+
+setup:
+	@tools/setup
+
+build: setup
+	@cmake --preset release --log-level=WARNING
+	@cmake --build --preset release
+
+test: setup
+	@tests/run_all
+
+demo: build
+	@tools/demo
+
+studies: build
+	@tools/studies
+
+format:
+	@git ls-files -z '*.c' '*.h' '*.cu' '*.cuh' '*.cpp' | xargs -0 clang-format -i
+
+clean:
+	rm -rf build

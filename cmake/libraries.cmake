@@ -1,0 +1,28 @@
+# Libraries of Debian that scree stands on. tools/setup installs them.
+find_package(PkgConfig REQUIRED)
+
+set(missing "")
+macro(scree_find_package variable module package)
+    pkg_check_modules(${variable} QUIET IMPORTED_TARGET ${module})
+    if(NOT ${variable}_FOUND)
+        list(APPEND missing ${package})
+    endif()
+endmacro()
+scree_find_package(CYAML libcyaml libcyaml-dev)
+scree_find_package(YAML yaml-0.1 libyaml-dev)
+scree_find_package(ASSIMP assimp libassimp-dev)
+scree_find_package(HDF5 hdf5-serial libhdf5-dev)
+find_library(MESHOPTIMIZER_LIBRARY meshoptimizer)
+find_path(MESHOPTIMIZER_INCLUDE_DIR meshoptimizer.h)
+if(NOT MESHOPTIMIZER_LIBRARY OR NOT MESHOPTIMIZER_INCLUDE_DIR)
+    list(APPEND missing libmeshoptimizer-dev)
+endif()
+if(missing)
+    list(JOIN missing " " missing)
+    message(FATAL_ERROR "Libraries are missing: ${missing}. Run tools/setup, or install these packages yourself.")
+endif()
+
+add_library(scree_dependencies INTERFACE)
+target_link_libraries(scree_dependencies INTERFACE
+    PkgConfig::CYAML PkgConfig::YAML PkgConfig::ASSIMP PkgConfig::HDF5 ${MESHOPTIMIZER_LIBRARY})
+target_include_directories(scree_dependencies SYSTEM INTERFACE ${MESHOPTIMIZER_INCLUDE_DIR})

@@ -1,0 +1,96 @@
+# One CTest program per tests/<kind>/test_*.c, labelled with its kind; scripts in tests/cli, tests/python and
+# tests/checks. Only the kinds in SCREE_TEST_LABELS are built.
+set(timeout_unit 120)
+set(timeout_property 300)
+set(timeout_physics 600)
+set(timeout_regression 600)
+set(timeout_single 300)
+set(timeout_cli 600)
+set(timeout_python 600)
+set(timeout_checks 900)
+if(CMAKE_BUILD_TYPE STREQUAL "Checked")
+    set(timeout_unit 600) # sanitizers cost a factor of three to ten
+    set(timeout_property 1200)
+endif()
+
+# Tests of threads set their number themselves; elsewhere one thread per test lets two tests run side by side.
+set(test_environment "OMP_NUM_THREADS=1" "OMP_WAIT_POLICY=passive"
+    "UBSAN_OPTIONS=print_stacktrace=1" "ASAN_OPTIONS=detect_stack_use_after_return=1"
+    "SCREE_SOURCE_DIR=${CMAKE_SOURCE_DIR}")
+
+function(scree_describe_test name kind)
+    set_tests_properties(${name} PROPERTIES
+        LABELS ${kind} TIMEOUT ${timeout_${kind}} ENVIRONMENT "${test_environment}"
+        WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+endfunction()
+
+# What several test programs share: tests/<kind>/*.c that are not tests themselves.
+file(GLOB support_sources CONFIGURE_DEPENDS tests/*/*.c)
+list(FILTER support_sources EXCLUDE REGEX "/test_[^/]*$|/cuda_on_cpu/|/reference/")
+if(support_sources)
+    add_library(scree_test_support STATIC EXCLUDE_FROM_ALL ${support_sources})
+    target_include_directories(scree_test_support PRIVATE src tests)
+    target_link_libraries(scree_test_support PUBLIC scree)
+endif()
+
+function(scree_add_test_programs kind library)
+    if(NOT kind IN_LIST SCREE_TEST_LABELS)
+        return()
+    endif()
+    file(GLOB sources CONFIGURE_DEPENDS tests/${kind}/test_*.c)
+    foreach(source ${sources})
+        get_filename_component(name ${source} NAME_WE)
+        add_executable(${name} ${source})
+        target_include_directories(${name} PRIVATE src tests)
+        if(TARGET scree_test_support AND library STREQUAL "scree")
+            target_link_libraries(${name} PRIVATE scree_test_support)
+        endif()
+        target_link_libraries(${name} PRIVATE ${library} scree_dependencies)
+        set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
+        add_test(NAME ${name} COMMAND ${name})
+        scree_describe_test(${name} ${kind})
+        if(kind STREQUAL "regression" AND SCREE_COMPARE_WITH)
+            add_test(NAME same_hash_${name} COMMAND ${CMAKE_SOURCE_DIR}/tests/checks/same_hashes.sh
+                $<TARGET_FILE:${name}> ${SCREE_COMPARE_WITH}/tests/${name})
+            scree_describe_test(same_hash_${name} ${kind})
+        endif()
+    endforeach()
+endfunction()
+
+foreach(kind unit property physics regression)
+    scree_add_test_programs(${kind} scree)
+endforeach()
+scree_add_test_programs(single scree_single)
+
+if("reference" IN_LIST SCREE_TEST_LABELS AND EXISTS ${CMAKE_SOURCE_DIR}/tests/reference/CMakeLists.txt)
+    enable_language(CXX)
+    add_subdirectory(tests/reference)
+endif()
+
+# Scripts find the program in SCREE_PROGRAM and are run by the interpreter of the virtual environment.
+set(python ${CMAKE_SOURCE_DIR}/.venv/bin/python)
+if(NOT EXISTS ${python})
+    set(python python3)
+endif()
+
+function(scree_add_scripts kind)
+    if(NOT kind IN_LIST SCREE_TEST_LABELS)
+        return()
+    endif()
+    file(GLOB scripts CONFIGURE_DEPENDS tests/${kind}/test_*.py tests/${kind}/test_*.sh)
+    foreach(script ${scripts})
+        get_filename_component(base ${script} NAME_WE)
+        set(name ${kind}_${base})
+        if(script MATCHES "\\.py$")
+            add_test(NAME ${name} COMMAND ${python} -B -m pytest -q -p no:cacheprovider ${script})
+        else()
+            add_test(NAME ${name} COMMAND bash ${script})
+        endif()
+        scree_describe_test(${name} ${kind})
+        set_property(TEST ${name} APPEND PROPERTY ENVIRONMENT
+            "SCREE_PROGRAM=${CMAKE_BINARY_DIR}/scree" "SCREE_BUILD_DIR=${CMAKE_BINARY_DIR}" "SCREE_PYTHON=${python}")
+    endforeach()
+endfunction()
+foreach(kind cli python checks)
+    scree_add_scripts(${kind})
+endforeach()

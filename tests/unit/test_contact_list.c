@@ -1,0 +1,130 @@
+// Contact list and history: growth keeps what is there, history follows pairs through new neighbour lists.
+#include "contact/history.h"
+#include "harness.h"
+
+#include <stdlib.h>
+
+static void fill(scree_contact_list *list, const scree_candidate_pair *bodies, int64_t num)
+{
+    SCREE_CHECK_INT(scree_contact_list_reserve(list, num, num), SCREE_OK);
+    list->num_contacts = num;
+    for (int64_t c = 0; c < num; ++c)
+    {
+        list->bodies[c] = bodies[c];
+        list->patch[c] = 0;
+        list->volume[c] = 1;
+        list->indentation[c] = 1;
+        list->normal[c] = scree_vec3_make(0, 0, 1);
+        list->arm[c] = scree_vec3_make(0, 0, 0);
+        list->first_of_pair[c] = c;
+    }
+    list->first_of_pair[num] = num;
+}
+
+static void test_growth_keeps_contents(void)
+{
+    scree_contact_list list = {0};
+    const scree_candidate_pair bodies[] = {{0, 1}, {0, 2}};
+    fill(&list, bodies, 2);
+    SCREE_CHECK_INT(scree_contact_list_reserve(&list, 100000, 50000), SCREE_OK);
+    SCREE_CHECK(list.bodies[1].i == 0 && list.bodies[1].j == 2 && list.first_of_pair[2] == 2);
+    scree_contact_list_destroy(&list);
+}
+
+static void test_validate_finds_faults(void)
+{
+    scree_contact_list list = {0};
+    const scree_candidate_pair bodies[] = {{0, 1}, {0, 2}, {1, 2}};
+    fill(&list, bodies, 3);
+    SCREE_CHECK(scree_contact_list_validate(&list, NULL));
+    list.bodies[1].j = 1;
+    SCREE_CHECK(!scree_contact_list_validate(&list, NULL));
+    list.bodies[1].j = 2;
+    list.volume[2] = 0;
+    SCREE_CHECK(!scree_contact_list_validate(&list, NULL));
+    list.volume[2] = NAN;
+    SCREE_CHECK(!scree_contact_list_validate(&list, NULL));
+    list.volume[2] = 1;
+    list.normal[0].z = 1.001;
+    SCREE_CHECK(!scree_contact_list_validate(&list, NULL));
+    list.normal[0].z = 1;
+    list.bodies[0].i = 7;
+    SCREE_CHECK(!scree_contact_list_validate(&list, NULL));
+    scree_contact_list_destroy(&list);
+}
+
+/// Random old and new lists: the history found by bisection is the one that a search through all finds.
+static void test_history_follows_pairs(void)
+{
+    enum
+    {
+        MAX = 400
+    };
+    uint64_t seed = 3;
+    for (int round = 0; round < 200; ++round)
+    {
+        scree_contact_list lists[2] = {{0}, {0}};
+        for (int k = 0; k < 2; ++k)
+        {
+            scree_candidate_pair bodies[MAX];
+            int64_t num = 0;
+            for (int32_t i = 0; i < 20; ++i)
+                for (int32_t j = i + 1; j < 20; ++j)
+                    if (scree_test_random(&seed) < 0.3) bodies[num++] = (scree_candidate_pair){i, j};
+            fill(&lists[k], bodies, num);
+        }
+        int64_t old_of_contact[MAX];
+        uint8_t is_continued[MAX] = {0};
+        scree_history_match_args args = {lists[1].bodies,       lists[1].first_of_pair, NULL,
+                                         lists[0].bodies,       lists[1].arm,           lists[0].arm,
+                                         lists[0].num_contacts, old_of_contact,         is_continued};
+        scree_history_match_launch(args, lists[1].num_contacts);
+        int64_t num_continued = 0;
+        for (int64_t c = 0; c < lists[1].num_contacts; ++c)
+        {
+            int64_t expected = -1;
+            for (int64_t o = 0; o < lists[0].num_contacts; ++o)
+                if (lists[0].bodies[o].i == lists[1].bodies[c].i && lists[0].bodies[o].j == lists[1].bodies[c].j)
+                    expected = o;
+            SCREE_CHECK_INT(old_of_contact[c], expected);
+            num_continued += expected >= 0;
+        }
+        for (int64_t o = 0; o < lists[0].num_contacts; ++o) num_continued -= is_continued[o];
+        SCREE_CHECK_INT(num_continued, 0);
+        scree_contact_list_destroy(&lists[0]);
+        scree_contact_list_destroy(&lists[1]);
+    }
+}
+
+/// Two patches of one pair keep their histories when their order in the list changes.
+static void test_patches_find_the_nearest(void)
+{
+    scree_contact_list now = {0}, old = {0};
+    const scree_candidate_pair bodies[] = {{0, 1}, {0, 1}};
+    fill(&now, bodies, 2);
+    fill(&old, bodies, 2);
+    now.first_of_pair[0] = old.first_of_pair[0] = 0;
+    now.first_of_pair[1] = old.first_of_pair[1] = 2;
+    old.arm[0].x = 1;
+    old.arm[1].x = -1;
+    now.arm[0].x = -1.01;
+    now.arm[1].x = 1.02;
+    int64_t old_of_contact[2];
+    uint8_t is_continued[2] = {0, 0};
+    const scree_history_match_args args = {bodies, now.first_of_pair, old.first_of_pair, old.bodies, now.arm, old.arm,
+                                           2,      old_of_contact,    is_continued};
+    scree_history_match_launch(args, 1);
+    SCREE_CHECK_INT(old_of_contact[0], 1);
+    SCREE_CHECK_INT(old_of_contact[1], 0);
+    scree_contact_list_destroy(&now);
+    scree_contact_list_destroy(&old);
+}
+
+int main(void)
+{
+    SCREE_RUN(test_growth_keeps_contents);
+    SCREE_RUN(test_validate_finds_faults);
+    SCREE_RUN(test_history_follows_pairs);
+    SCREE_RUN(test_patches_find_the_nearest);
+    return SCREE_TEST_END();
+}

@@ -1,0 +1,8 @@
+#include "core/launch_cuda.cuh"
+#include "forces/contact_force_kernel.h"
+#include "forces/gather_kernel.h"
+#include "forces/work_kernel.h"
+
+SCREE_DEFINE_LAUNCH(scree_contact_force)
+SCREE_DEFINE_LAUNCH(scree_gather)
+SCREE_DEFINE_LAUNCH(scree_work)

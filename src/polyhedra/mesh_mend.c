@@ -1,0 +1,221 @@
+/// \file mesh_mend.c
+/// Repairs that cannot change the body beyond the given tolerance; each is told as a warning.
+#include "bvh/lbvh.h"
+#include "core/exact_arith.h"
+#include "polyhedra/mesh.h"
+#include "polyhedra/mesh_edges.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static scree_real distance_squared(scree_vec3 p, scree_vec3 q)
+{
+    const scree_vec3 d = scree_vec3_sub(p, q);
+    return scree_vec3_dot(d, d);
+}
+
+/// For each vertex the first one that stands for it: itself, or the lowest representative within `distance`.
+static scree_status find_representatives(const scree_mesh *mesh, scree_real distance, int32_t *representative)
+{
+    const scree_vec3 margin = scree_vec3_make(distance, distance, distance);
+    scree_lbvh tree = {0};
+    scree_box *boxes = malloc((size_t)mesh->num_vertices * sizeof *boxes);
+    if (boxes == NULL) return SCREE_OUT_OF_MEMORY;
+    for (int32_t i = 0; i < mesh->num_vertices; ++i) boxes[i] = (scree_box){mesh->vertices[i], mesh->vertices[i]};
+    const scree_status status = scree_lbvh_build(&tree, boxes, mesh->num_vertices);
+    for (int32_t i = 0; status == SCREE_OK && i < mesh->num_vertices; ++i)
+    {
+        const scree_vec3 p = mesh->vertices[i];
+        const scree_box query = {scree_vec3_sub(p, margin), scree_vec3_add(p, margin)};
+        int32_t next = tree.view.root;
+        representative[i] = i;
+        for (int32_t j; (j = scree_lbvh_next_overlap(tree.view, query, next, &next)) >= 0;)
+        {
+            if (j >= representative[i] || representative[j] != j) continue;
+            if (distance_squared(p, mesh->vertices[j]) <= distance * distance) representative[i] = j;
+        }
+    }
+    scree_lbvh_destroy(&tree);
+    free(boxes);
+    return status;
+}
+
+static scree_status weld(scree_mesh *mesh, double tolerance, const char *name, scree_report *report)
+{
+    const scree_box box = scree_mesh_box(mesh);
+    const double size = (double)scree_vec3_length(scree_vec3_sub(box.upper, box.lower));
+    int32_t *representative = malloc(((size_t)mesh->num_vertices + 1) * sizeof *representative);
+    if (representative == NULL) return SCREE_OUT_OF_MEMORY;
+    const scree_status status = find_representatives(mesh, (scree_real)(tolerance * size), representative);
+    if (status == SCREE_OK)
+    {
+        int32_t num_welded = 0;
+        int32_t num_moved = 0;
+        for (int32_t i = 0; i < mesh->num_vertices; ++i)
+        {
+            num_welded += representative[i] != i;
+            num_moved += distance_squared(mesh->vertices[i], mesh->vertices[representative[i]]) > 0;
+        }
+        for (int32_t i = 0; i < mesh->num_triangles; ++i)
+            for (int k = 0; k < 3; ++k) mesh->triangles[i].v[k] = representative[mesh->triangles[i].v[k]];
+        if (num_moved > 0)
+            scree_report_warn(report, "%s: %d of %d vertices were joined with others, %d of them moved by up to %.3g",
+                              name, num_welded, mesh->num_vertices, num_moved, tolerance * size);
+        else if (num_welded > 0)
+            scree_report_warn(report, "%s: %d of %d vertices were joined with others in the same place", name,
+                              num_welded, mesh->num_vertices);
+    }
+    free(representative);
+    return status;
+}
+
+static void drop_degenerate(scree_mesh *mesh, const char *name, scree_report *report)
+{
+    int32_t num_kept = 0;
+    for (int32_t i = 0; i < mesh->num_triangles; ++i)
+    {
+        const scree_triangle t = mesh->triangles[i];
+        if (t.v[0] != t.v[1] && t.v[1] != t.v[2] && t.v[2] != t.v[0]) mesh->triangles[num_kept++] = t;
+    }
+    if (num_kept < mesh->num_triangles)
+        scree_report_warn(report, "%s: %d triangles with a vertex twice were removed", name,
+                          mesh->num_triangles - num_kept);
+    mesh->num_triangles = num_kept;
+}
+
+/// A triangle turned so that its lowest vertex comes first; odd if the two others descend.
+typedef struct turned_triangle
+{
+    int32_t low, middle, high;
+    int32_t triangle;
+    bool is_odd;
+} turned_triangle;
+
+static int compare_turned(const void *left, const void *right)
+{
+    const turned_triangle *a = left;
+    const turned_triangle *b = right;
+    if (a->low != b->low) return a->low < b->low ? -1 : 1;
+    if (a->middle != b->middle) return a->middle < b->middle ? -1 : 1;
+    if (a->high != b->high) return a->high < b->high ? -1 : 1;
+    return (a->triangle > b->triangle) - (a->triangle < b->triangle);
+}
+
+static turned_triangle turn(const scree_mesh *mesh, int32_t i)
+{
+    const int32_t *v = mesh->triangles[i].v;
+    const int k = v[0] < v[1] ? (v[0] < v[2] ? 0 : 2) : (v[1] < v[2] ? 1 : 2);
+    const int32_t a = v[(k + 1) % 3];
+    const int32_t b = v[(k + 2) % 3];
+    return (turned_triangle){v[k], a < b ? a : b, a < b ? b : a, i, a > b};
+}
+
+/// Of equal triangles the first stays; triangles that lie back to back enclose nothing and both go.
+static scree_status drop_repeated(scree_mesh *mesh, const char *name, scree_report *report)
+{
+    const int32_t num = mesh->num_triangles;
+    turned_triangle *turned = malloc(((size_t)num + 1) * sizeof *turned);
+    bool *is_dropped = calloc((size_t)num + 1, sizeof *is_dropped);
+    if (turned == NULL || is_dropped == NULL)
+    {
+        free(turned);
+        free(is_dropped);
+        return SCREE_OUT_OF_MEMORY;
+    }
+    for (int32_t i = 0; i < num; ++i) turned[i] = turn(mesh, i);
+    qsort(turned, (size_t)num, sizeof *turned, compare_turned);
+    for (int32_t begin = 0, end; begin < num; begin = end)
+    {
+        bool has[2] = {false, false};
+        for (end = begin; end < num; ++end)
+        {
+            const turned_triangle *t = turned + end;
+            if (t->low != turned[begin].low || t->middle != turned[begin].middle || t->high != turned[begin].high)
+                break;
+            is_dropped[t->triangle] = has[t->is_odd];
+            has[t->is_odd] = true;
+        }
+        for (int32_t i = begin; has[0] && has[1] && i < end; ++i) is_dropped[turned[i].triangle] = true;
+    }
+    int32_t num_kept = 0;
+    for (int32_t i = 0; i < num; ++i)
+        if (!is_dropped[i]) mesh->triangles[num_kept++] = mesh->triangles[i];
+    mesh->num_triangles = num_kept;
+    if (num_kept < num)
+        scree_report_warn(report, "%s: %d repeated or back to back triangles were removed", name, num - num_kept);
+    free(turned);
+    free(is_dropped);
+    return SCREE_OK;
+}
+
+static scree_status drop_unused_vertices(scree_mesh *mesh)
+{
+    int32_t *new_index = malloc(((size_t)mesh->num_vertices + 1) * sizeof *new_index);
+    if (new_index == NULL) return SCREE_OUT_OF_MEMORY;
+    for (int32_t i = 0; i < mesh->num_vertices; ++i) new_index[i] = -1;
+    for (int32_t i = 0; i < mesh->num_triangles; ++i)
+        for (int k = 0; k < 3; ++k) new_index[mesh->triangles[i].v[k]] = 0;
+    int32_t num_kept = 0;
+    for (int32_t i = 0; i < mesh->num_vertices; ++i)
+    {
+        if (new_index[i] < 0) continue;
+        mesh->vertices[num_kept] = mesh->vertices[i];
+        new_index[i] = num_kept++;
+    }
+    for (int32_t i = 0; i < mesh->num_triangles; ++i)
+        for (int k = 0; k < 3; ++k) mesh->triangles[i].v[k] = new_index[mesh->triangles[i].v[k]];
+    mesh->num_vertices = num_kept;
+    free(new_index);
+    return SCREE_OK;
+}
+
+/// A closed, consistently oriented mesh of negative volume is turned round as a whole.
+static scree_status turn_outwards(scree_mesh *mesh, const char *name, scree_report *report)
+{
+    scree_mesh_side *sides = scree_mesh_sides_create(mesh);
+    int32_t *neighbours = malloc((3 * (size_t)mesh->num_triangles + 1) * sizeof *neighbours);
+    scree_status status = SCREE_OUT_OF_MEMORY;
+    if (sides != NULL && neighbours != NULL)
+    {
+        status = SCREE_OK;
+        const bool is_closed = scree_mesh_link(mesh, sides, neighbours) == 0;
+        double six_volume = 0.0;
+        for (int32_t i = 0; i < mesh->num_triangles; ++i)
+            six_volume += scree_mesh_six_volume(mesh, i, mesh->triangles[0].v[0]);
+        if (is_closed && six_volume < 0.0)
+        {
+            for (int32_t i = 0; i < mesh->num_triangles; ++i)
+            {
+                int32_t *v = mesh->triangles[i].v;
+                const int32_t old = v[1];
+                v[1] = v[2];
+                v[2] = old;
+            }
+            scree_report_warn(report, "%s: the surface was inside out and was turned", name);
+        }
+    }
+    free(sides);
+    free(neighbours);
+    return status;
+}
+
+scree_status scree_mesh_mend(scree_mesh *mesh, double tolerance, const char *name, scree_report *report)
+{
+    // meshes with bad numbers or indices are left for the validation to refuse
+    for (int32_t i = 0; i < mesh->num_vertices; ++i)
+    {
+        const scree_vec3 p = mesh->vertices[i];
+        const double largest = (double)scree_max(scree_abs(p.x), scree_max(scree_abs(p.y), scree_abs(p.z)));
+        if (!(largest <= SCREE_EXACT_MAX) || p.y != p.y || p.z != p.z) return SCREE_OK;
+    }
+    for (int32_t i = 0; i < mesh->num_triangles; ++i)
+        for (int k = 0; k < 3; ++k)
+            if (mesh->triangles[i].v[k] < 0 || mesh->triangles[i].v[k] >= mesh->num_vertices) return SCREE_OK;
+    scree_status status = weld(mesh, tolerance, name, report);
+    if (status != SCREE_OK) return status;
+    drop_degenerate(mesh, name, report);
+    status = drop_repeated(mesh, name, report);
+    if (status == SCREE_OK) status = drop_unused_vertices(mesh);
+    if (status == SCREE_OK && mesh->num_triangles > 0) status = turn_outwards(mesh, name, report);
+    return status;
+}

@@ -1,5 +1,5 @@
 /// \file mesh_edges.h
-/// The edges of a mesh as a sorted list of triangle sides: the common ground of checks, neighbours and mending.
+/// The edges of a mesh as a sorted list of triangle sides, and other common ground of checks, neighbours and mending.
 #ifndef SCREE_MESH_EDGES_H
 #define SCREE_MESH_EDGES_H
 
@@ -32,5 +32,12 @@ int32_t scree_mesh_label_pieces(const scree_mesh *mesh, const int32_t *neighbour
 /// Six times the signed volume of the tetrahedron of one triangle and the vertex `about`. Summed over a closed piece,
 /// with a vertex of that piece, it is the piece's volume, with nothing lost far from the origin.
 double scree_mesh_six_volume(const scree_mesh *mesh, int32_t triangle, int32_t about);
+
+/// True if all coordinates are finite and within SCREE_EXACT_MAX and all indices are in range.
+bool scree_mesh_is_computable(const scree_mesh *mesh);
+
+/// Lets vertices closer than `tolerance` times the size of the box be one, the first of them, and drops unused ones.
+/// The mesh must be computable.
+scree_status scree_mesh_weld(scree_mesh *mesh, double tolerance, const char *name, scree_report *report);
 
 #endif

@@ -19,7 +19,7 @@ static scree_status find_representatives(const scree_mesh *mesh, scree_real dist
 {
     const scree_vec3 margin = scree_vec3_make(distance, distance, distance);
     scree_lbvh tree = {0};
-    scree_box *boxes = malloc((size_t)mesh->num_vertices * sizeof *boxes);
+    scree_box *boxes = malloc(((size_t)mesh->num_vertices + 1) * sizeof *boxes);
     if (boxes == NULL) return SCREE_OUT_OF_MEMORY;
     for (int32_t i = 0; i < mesh->num_vertices; ++i) boxes[i] = (scree_box){mesh->vertices[i], mesh->vertices[i]};
     const scree_status status = scree_lbvh_build(&tree, boxes, mesh->num_vertices);
@@ -40,30 +40,59 @@ static scree_status find_representatives(const scree_mesh *mesh, scree_real dist
     return status;
 }
 
-static scree_status weld(scree_mesh *mesh, double tolerance, const char *name, scree_report *report)
+static scree_status drop_unused_vertices(scree_mesh *mesh)
+{
+    int32_t *new_index = malloc(((size_t)mesh->num_vertices + 1) * sizeof *new_index);
+    if (new_index == NULL) return SCREE_OUT_OF_MEMORY;
+    for (int32_t i = 0; i < mesh->num_vertices; ++i) new_index[i] = -1;
+    for (int32_t i = 0; i < mesh->num_triangles; ++i)
+        for (int k = 0; k < 3; ++k) new_index[mesh->triangles[i].v[k]] = 0;
+    int32_t num_kept = 0;
+    for (int32_t i = 0; i < mesh->num_vertices; ++i)
+    {
+        if (new_index[i] < 0) continue;
+        mesh->vertices[num_kept] = mesh->vertices[i];
+        new_index[i] = num_kept++;
+    }
+    for (int32_t i = 0; i < mesh->num_triangles; ++i)
+        for (int k = 0; k < 3; ++k) mesh->triangles[i].v[k] = new_index[mesh->triangles[i].v[k]];
+    mesh->num_vertices = num_kept;
+    free(new_index);
+    return SCREE_OK;
+}
+
+/// What became one, and how far it went.
+static void tell_weld(const scree_mesh *mesh, const int32_t *representative, const char *name, scree_report *report)
+{
+    int32_t num_welded = 0;
+    scree_real farthest = 0;
+    for (int32_t i = 0; i < mesh->num_vertices; ++i)
+    {
+        num_welded += representative[i] != i;
+        farthest = scree_max(farthest, distance_squared(mesh->vertices[i], mesh->vertices[representative[i]]));
+    }
+    if (num_welded == 0) return;
+    if (farthest > 0)
+        scree_report_warn(report, "%s: %d of %d vertices were joined with others, at most %.3g away", name, num_welded,
+                          mesh->num_vertices, sqrt((double)farthest));
+    else
+        scree_report_warn(report, "%s: %d of %d vertices were joined with others in the same place", name, num_welded,
+                          mesh->num_vertices);
+}
+
+scree_status scree_mesh_weld(scree_mesh *mesh, double tolerance, const char *name, scree_report *report)
 {
     const scree_box box = scree_mesh_box(mesh);
     const double size = (double)scree_vec3_length(scree_vec3_sub(box.upper, box.lower));
     int32_t *representative = malloc(((size_t)mesh->num_vertices + 1) * sizeof *representative);
     if (representative == NULL) return SCREE_OUT_OF_MEMORY;
-    const scree_status status = find_representatives(mesh, (scree_real)(tolerance * size), representative);
+    scree_status status = find_representatives(mesh, (scree_real)(tolerance * size), representative);
     if (status == SCREE_OK)
     {
-        int32_t num_welded = 0;
-        int32_t num_moved = 0;
-        for (int32_t i = 0; i < mesh->num_vertices; ++i)
-        {
-            num_welded += representative[i] != i;
-            num_moved += distance_squared(mesh->vertices[i], mesh->vertices[representative[i]]) > 0;
-        }
         for (int32_t i = 0; i < mesh->num_triangles; ++i)
             for (int k = 0; k < 3; ++k) mesh->triangles[i].v[k] = representative[mesh->triangles[i].v[k]];
-        if (num_moved > 0)
-            scree_report_warn(report, "%s: %d of %d vertices were joined with others, %d of them moved by up to %.3g",
-                              name, num_welded, mesh->num_vertices, num_moved, tolerance * size);
-        else if (num_welded > 0)
-            scree_report_warn(report, "%s: %d of %d vertices were joined with others in the same place", name,
-                              num_welded, mesh->num_vertices);
+        tell_weld(mesh, representative, name, report);
+        status = drop_unused_vertices(mesh);
     }
     free(representative);
     return status;
@@ -148,27 +177,6 @@ static scree_status drop_repeated(scree_mesh *mesh, const char *name, scree_repo
     return SCREE_OK;
 }
 
-static scree_status drop_unused_vertices(scree_mesh *mesh)
-{
-    int32_t *new_index = malloc(((size_t)mesh->num_vertices + 1) * sizeof *new_index);
-    if (new_index == NULL) return SCREE_OUT_OF_MEMORY;
-    for (int32_t i = 0; i < mesh->num_vertices; ++i) new_index[i] = -1;
-    for (int32_t i = 0; i < mesh->num_triangles; ++i)
-        for (int k = 0; k < 3; ++k) new_index[mesh->triangles[i].v[k]] = 0;
-    int32_t num_kept = 0;
-    for (int32_t i = 0; i < mesh->num_vertices; ++i)
-    {
-        if (new_index[i] < 0) continue;
-        mesh->vertices[num_kept] = mesh->vertices[i];
-        new_index[i] = num_kept++;
-    }
-    for (int32_t i = 0; i < mesh->num_triangles; ++i)
-        for (int k = 0; k < 3; ++k) mesh->triangles[i].v[k] = new_index[mesh->triangles[i].v[k]];
-    mesh->num_vertices = num_kept;
-    free(new_index);
-    return SCREE_OK;
-}
-
 /// A closed, consistently oriented mesh of negative volume is turned round as a whole.
 static scree_status turn_outwards(scree_mesh *mesh, const char *name, scree_report *report)
 {
@@ -199,19 +207,24 @@ static scree_status turn_outwards(scree_mesh *mesh, const char *name, scree_repo
     return status;
 }
 
-scree_status scree_mesh_mend(scree_mesh *mesh, double tolerance, const char *name, scree_report *report)
+static bool is_within(scree_real x) { return (double)scree_abs(x) <= SCREE_EXACT_MAX; }
+
+bool scree_mesh_is_computable(const scree_mesh *mesh)
 {
-    // meshes with bad numbers or indices are left for the validation to refuse
     for (int32_t i = 0; i < mesh->num_vertices; ++i)
-    {
-        const scree_vec3 p = mesh->vertices[i];
-        const double largest = (double)scree_max(scree_abs(p.x), scree_max(scree_abs(p.y), scree_abs(p.z)));
-        if (!(largest <= SCREE_EXACT_MAX) || p.y != p.y || p.z != p.z) return SCREE_OK;
-    }
+        if (!is_within(mesh->vertices[i].x) || !is_within(mesh->vertices[i].y) || !is_within(mesh->vertices[i].z))
+            return false;
     for (int32_t i = 0; i < mesh->num_triangles; ++i)
         for (int k = 0; k < 3; ++k)
-            if (mesh->triangles[i].v[k] < 0 || mesh->triangles[i].v[k] >= mesh->num_vertices) return SCREE_OK;
-    scree_status status = weld(mesh, tolerance, name, report);
+            if (mesh->triangles[i].v[k] < 0 || mesh->triangles[i].v[k] >= mesh->num_vertices) return false;
+    return true;
+}
+
+scree_status scree_mesh_mend(scree_mesh *mesh, double tolerance, const char *name, scree_report *report)
+{
+    // otherwise left for the validation to refuse
+    if (!scree_mesh_is_computable(mesh)) return SCREE_OK;
+    scree_status status = scree_mesh_weld(mesh, tolerance, name, report);
     if (status != SCREE_OK) return status;
     drop_degenerate(mesh, name, report);
     status = drop_repeated(mesh, name, report);

@@ -1,0 +1,163 @@
+// Particles from a scene: numbers, masses, sizes, places; regions that are too small and bodies inside each other.
+#include "scene_run.h"
+
+#define HEAD                                                                                       \
+    "name: populate\ntime: {end: 1, step: 1e-5}\n"                                                 \
+    "materials: [{name: stone, density: 2500, youngs_modulus: 1e7, poisson_ratio: 0.25}]\n"        \
+    "contact_laws: [{materials: [stone, stone], friction_coefficient: 0.4, damping_ratio: 0.3}]\n" \
+    "shapes:\n  - {name: rock, source: rock, triangles: 40, seed: 3}\n"                            \
+    "  - {name: cube, source: box, size: [0.1, 0.1, 0.1]}\n"
+
+static void test_sizes_follow_the_truncated_normal(void)
+{
+    scene_run run;
+    scene_run_start(&run,
+                    HEAD "particles:\n"
+                         "  - {name: fill, shape: rock, material: stone, count: 4000, seed: 5,\n"
+                         "     size: {distribution: normal, mean: 0.010, deviation: 0.005, min: 0.005, max: 0.010},\n"
+                         "     region: {min: [0, 0, 0], max: [1, 1, 1]}}\n");
+    if (run.simulation == NULL) return;
+    const scree_particles *p = &run.simulation->particles;
+    SCREE_CHECK_INT(p->num_particles, 4000);
+    const double middle = run.simulation->particle_shapes[p->shape[0]].middle_size;
+    double sum = 0;
+    for (int64_t i = 0; i < p->num_particles; ++i)
+    {
+        const double size = (double)p->scale[i] * middle;
+        SCREE_CHECK(size >= 0.005 * (1 - 1e-12) && size <= 0.010 * (1 + 1e-12));
+        sum += size;
+    }
+    // mean of a normal truncated to [m - s, m]: m - s (phi(0) - phi(1))/(Phi(0) - Phi(-1)); deviation of the mean 2e-5
+    const double phi_0 = 0.3989422804014327, phi_1 = 0.24197072451914337, mass = 0.3413447460685429;
+    SCREE_CHECK_CLOSE(sum / 4000, 0.010 - 0.005 * (phi_0 - phi_1) / mass, 1e-4);
+    scene_run_end(&run);
+}
+
+static void test_total_mass_is_reached_by_the_last_particle(void)
+{
+    scene_run run;
+    scene_run_start(&run, HEAD "particles:\n"
+                               "  - {name: fill, shape: rock, material: stone, mass: 1.0, seed: 5,\n"
+                               "     size: {distribution: uniform, min: 0.005, max: 0.010},\n"
+                               "     region: {min: [0, 0, 0], max: [0.3, 0.3, 1]}}\n");
+    if (run.simulation == NULL) return;
+    const scree_particles *p = &run.simulation->particles;
+    double mass = 0;
+    for (int64_t i = 0; i < p->num_particles; ++i) mass += (double)p->mass[i];
+    SCREE_CHECK(mass >= 1.0 && mass - (double)p->mass[p->num_particles - 1] < 1.0);
+    SCREE_CHECK_INT(run.simulation->contacts.num_contacts, 0);
+    scene_run_end(&run);
+}
+
+/// A quarter of all orientations turns each body axis up; the mean of each component of R vanishes.
+static void test_orientations_are_uniform(void)
+{
+    scene_run run;
+    scene_run_start(&run, HEAD "particles:\n"
+                               "  - {name: fill, shape: cube, material: stone, count: 5000, seed: 9,\n"
+                               "     region: {min: [0, 0, 0], max: [4, 4, 4]}}\n");
+    if (run.simulation == NULL) return;
+    const scree_particles *p = &run.simulation->particles;
+    double mean[3] = {0}, square[3] = {0};
+    for (int64_t i = 0; i < p->num_particles; ++i)
+    {
+        const scree_mat3 r = scree_mat3_from_quat(p->orientation[i]);
+        const double z[3] = {(double)r.row[2].x, (double)r.row[2].y, (double)r.row[2].z};
+        for (int k = 0; k < 3; ++k)
+        {
+            mean[k] += z[k] / 5000;
+            square[k] += z[k] * z[k] / 5000;
+        }
+    }
+    // z is uniform in [-1, 1]: deviation of the mean sqrt(1/3/5000), of the mean square sqrt(4/45/5000); five of them
+    for (int k = 0; k < 3; ++k)
+    {
+        SCREE_CHECK_CLOSE(mean[k], 0, 5 * sqrt(1.0 / 3 / 5000));
+        SCREE_CHECK_CLOSE(square[k], 1.0 / 3, 5 * sqrt(4.0 / 45 / 5000));
+    }
+    scene_run_end(&run);
+}
+
+/// Creates a simulation that must be refused; returns the messages in one text.
+static void refuse(const char *text, char *messages, size_t size)
+{
+    scree_scene_file file = {0};
+    scree_report report = {0};
+    scree_simulation *simulation = NULL;
+    messages[0] = 0;
+    SCREE_CHECK_INT(scree_scene_parse(&file, text, "test.yaml", NULL, 0, &report), SCREE_OK);
+    SCREE_CHECK_INT(scree_simulation_create(&simulation, &file.scene, file.folder, &report), SCREE_INVALID_INPUT);
+    SCREE_CHECK(simulation == NULL);
+    for (int k = 0; k < report.num_messages; ++k)
+        snprintf(messages + strlen(messages), size - strlen(messages), "%s\n", report.messages[k]);
+    scree_scene_close(&file);
+    scree_report_clear(&report);
+}
+
+static void test_regions_that_are_too_small_are_told_together(void)
+{
+    char messages[4096];
+    refuse(HEAD
+           "particles:\n"
+           "  - {name: first, shape: cube, material: stone, count: 100, region: {min: [0, 0, 0], max: [1, 0.2, 0.2]}}\n"
+           "  - {name: second, shape: cube, material: stone, count: 7, region: {min: [0, 0, 5], max: [0.1, 1, 6]}}\n",
+           messages, sizeof messages);
+    SCREE_CHECK_CONTAINS(messages, "particles \"first\": the region holds 5 particles");
+    SCREE_CHECK_CONTAINS(messages, "particles \"second\": the region holds 0 particles");
+}
+
+static void test_bodies_inside_each_other_are_refused(void)
+{
+    char messages[4096];
+    refuse(HEAD "particles:\n"
+                "  - name: block\n    shape: cube\n    material: stone\n"
+                "    bodies: [{position: [0, 0, 0]}, {position: [0.08, 0.01, 0.02]}]\n"
+                "walls:\n  - {name: obstacle, shape: cube, material: stone, position: [0, 0, -0.08]}\n",
+           messages, sizeof messages);
+    SCREE_CHECK_CONTAINS(messages, "inside particle 1");
+    SCREE_CHECK_CONTAINS(messages, "inside wall \"obstacle\"");
+}
+
+/// Cubes whose tops lie on a sigmoid: the fit must find it.
+static void test_repose_angle_of_a_known_profile(void)
+{
+    const double c = 0.5, a = 6, b = 0.55;
+    char bodies[4096] = "";
+    for (int k = 0; k < 10; ++k)
+    {
+        const double x = 0.05 + 0.1 * k, height = c / (1 + exp(a * (x - b)));
+        char one[96];
+        snprintf(one, sizeof one, "%s{position: [%g, %g, %.15g]}", k > 0 ? ", " : "", x, 0.2 * (k % 2), height - 0.05);
+        strcat(bodies, one);
+    }
+    char text[8192];
+    snprintf(text, sizeof text,
+             HEAD
+             "repose: {measure: true, from: 0, to: 1, base: 0, bins: 10}\n"
+             "particles:\n  - name: block\n    shape: cube\n    material: stone\n    size: {distribution: fixed, mean: "
+             "0.0999}\n    bodies: [%s]\n",
+             bodies);
+    scene_run run;
+    scene_run_start(&run, text);
+    scree_repose repose;
+    if (run.simulation == NULL) return;
+    SCREE_CHECK_INT(scree_simulation_repose(run.simulation, &repose), SCREE_OK);
+    const double angle = atan(a * c / 4) * 180 / M_PI;
+    printf("angle %.6f, expected %.6f degrees, residual %.3g m\n", repose.angle_degrees, angle, repose.residual);
+    // the cubes are 0.05 mm lower than the profile
+    SCREE_CHECK_CLOSE(repose.angle_degrees, angle, 0.05);
+    SCREE_CHECK_CLOSE(repose.middle, b, 1e-3);
+    SCREE_CHECK(repose.residual < 1e-4);
+    scene_run_end(&run);
+}
+
+int main(void)
+{
+    SCREE_RUN(test_sizes_follow_the_truncated_normal);
+    SCREE_RUN(test_total_mass_is_reached_by_the_last_particle);
+    SCREE_RUN(test_orientations_are_uniform);
+    SCREE_RUN(test_regions_that_are_too_small_are_told_together);
+    SCREE_RUN(test_bodies_inside_each_other_are_refused);
+    SCREE_RUN(test_repose_angle_of_a_known_profile);
+    return SCREE_TEST_END();
+}

@@ -1,0 +1,256 @@
+/// \file overlap_kernel.h
+/// Overlap of two posed meshes, from cheap exits to results: frame, filter, crossings, sums.
+#ifndef SCREE_OVERLAP_KERNEL_H
+#define SCREE_OVERLAP_KERNEL_H
+
+#include "contact/overlap_crossings_kernel.h"
+#include "contact/overlap_frame_kernel.h"
+#include "contact/overlap_sums_kernel.h"
+#include "contact/separation_kernel.h"
+#include "contact/triangle_filter_kernel.h"
+
+/// Certificates above this make the filtered scheme repeat with the hierarchy.
+#define SCREE_RESIDUAL_LIMIT ((scree_real)1e-6)
+
+/// Two bodies to be compared.
+typedef struct scree_overlap_pair
+{
+    const scree_shape_view *shape[2];
+    const scree_pose *pose[2];
+} scree_overlap_pair;
+
+/// What is known of a pair once its frame is chosen.
+typedef struct scree_overlap_setup
+{
+    scree_overlap_frame frame;
+    scree_posed_shape posed[2];
+    scree_vec3 direction;  ///< out of A into B, along the working axes, any length
+    scree_box box[2];      ///< of the whole bodies; A's exact, B's from outside
+    scree_real extents[2]; ///< largest side of each body's own box, in units of A
+} scree_overlap_setup;
+
+SCREE_FN scree_real scree_box_extent(scree_box box)
+{
+    return scree_max(box.upper.x - box.lower.x, scree_max(box.upper.y - box.lower.y, box.upper.z - box.lower.z));
+}
+
+/// Are the bounding spheres apart?
+SCREE_FN bool scree_overlap_spheres_apart(const scree_overlap_pair *pair)
+{
+    const scree_vec3 between = scree_vec3_sub(pair->pose[1]->position, pair->pose[0]->position);
+    const scree_real reach =
+        pair->pose[0]->scale * pair->shape[0]->bounding_radius + pair->pose[1]->scale * pair->shape[1]->bounding_radius;
+    return scree_vec3_dot(between, between) * (1 - 8 * SCREE_REAL_EPSILON) > reach * reach;
+}
+
+/// Box of a body in the working frame; `rounding` widens it.
+SCREE_FN scree_box scree_overlap_body_box(const scree_posed_shape *posed, scree_real rounding)
+{
+    const scree_vec3 middle = scree_affine(&posed->rows, scree_box_middle(posed->shape->box), posed->offset);
+    const scree_vec3 half = scree_vec3_add(scree_turned_extents(&posed->rows, scree_box_half(posed->shape->box)),
+                                           scree_vec3_make(rounding, rounding, rounding));
+    scree_box box;
+    box.lower = scree_vec3_sub(middle, half);
+    box.upper = scree_vec3_add(middle, half);
+    return box;
+}
+
+/// Largest coordinate in magnitude.
+SCREE_FN scree_real scree_box_reach(scree_box box)
+{
+    const scree_vec3 l = box.lower;
+    const scree_vec3 u = box.upper;
+    return scree_max(scree_max(scree_max(scree_abs(l.x), scree_abs(u.x)), scree_max(scree_abs(l.y), scree_abs(u.y))),
+                     scree_max(scree_abs(l.z), scree_abs(u.z)));
+}
+
+/// Frame and boxes. False if the boxes are apart.
+SCREE_FN bool scree_overlap_set_up(const scree_overlap_pair *pair, scree_overlap_setup *setup)
+{
+    const scree_relative_pose pose = scree_relative_pose_make(pair->pose[0], pair->pose[1]);
+    const scree_box box_a = pair->shape[0]->box;
+    scree_posed_shape b;
+    b.shape = pair->shape[1];
+    b.rows = pose.rotation;
+    b.offset = pose.translation;
+    const scree_real size = scree_max(scree_box_reach(box_a), scree_box_reach(scree_overlap_body_box(&b, 0)));
+    const scree_box box_b = scree_overlap_body_box(&b, 16 * SCREE_REAL_EPSILON * size);
+    if (!scree_box_overlaps(box_a, box_b)) return false;
+
+    // both boxes turned and shifted to the middle of what they share
+    scree_box common;
+    common.lower = scree_vec3_max(box_a.lower, box_b.lower);
+    common.upper = scree_vec3_min(box_a.upper, box_b.upper);
+    const scree_vec3 direction = scree_vec3_sub(scree_box_middle(box_b), scree_box_middle(box_a));
+    setup->frame = scree_overlap_frame_make(&pose, direction, scree_box_middle(common));
+    setup->direction = scree_frame_turn(&setup->frame, direction);
+    for (int32_t side = 0; side < 2; ++side)
+    {
+        setup->posed[side].shape = pair->shape[side];
+        setup->posed[side].rows = setup->frame.rows[side];
+        setup->posed[side].offset = setup->frame.offset[side];
+        setup->box[side] = scree_overlap_body_box(setup->posed + side, 32 * SCREE_REAL_EPSILON * size);
+    }
+    setup->extents[0] = scree_box_extent(box_a);
+    setup->extents[1] = scree_box_extent(pair->shape[1]->box) * (pair->pose[1]->scale / pair->pose[0]->scale);
+    return true;
+}
+
+/// Largest direction . v over a body in the working frame.
+SCREE_FN scree_real scree_overlap_support(const scree_posed_shape *posed, scree_vec3 direction)
+{
+    const scree_vec3 turned = scree_mat3_apply_transposed(posed->rows, direction);
+    return scree_support(posed->shape, turned) + scree_vec3_dot(direction, posed->offset);
+}
+
+/// Kept triangles of both. False: none of one body, or slice->lack is set.
+SCREE_FN bool scree_overlap_filter(scree_overlap_slice *slice, const scree_overlap_setup *setup)
+{
+    for (int32_t side = 0; side < 2; ++side)
+        if (!scree_filter_has_room(slice, side, setup->posed[side].shape)) return false;
+
+    // half-spaces: how far A reaches along the direction, and how far B reaches back
+    const scree_vec3 d = setup->direction;
+    const scree_real size = scree_max(scree_box_reach(setup->box[0]), scree_box_reach(setup->box[1]));
+    const scree_real rounding = 64 * SCREE_REAL_EPSILON * size * (scree_abs(d.x) + scree_abs(d.y) + scree_abs(d.z));
+    scree_filter_region region[2];
+    region[0].direction = scree_vec3_negate(d);
+    region[1].direction = d;
+    for (int32_t side = 0; side < 2; ++side)
+    {
+        const scree_real reach = scree_overlap_support(setup->posed + 1 - side, region[side].direction);
+        region[side].reach = reach + rounding;
+        region[side].box = setup->box[1 - side];
+    }
+    if (region[1].reach + region[0].reach < 0) return false;
+
+    // columns: A needs what lies above B's bottom, B what lies below A's top
+    region[0].box.upper.z = SCREE_REAL_MAX;
+    region[1].box.lower.z = -SCREE_REAL_MAX;
+    for (int32_t side = 1; side >= 0; --side)
+    {
+        if (!scree_filter_uses_tree(setup->posed[side].shape))
+            scree_filter_load_all(slice->body + side, setup->posed + side);
+        if (!scree_filter_run(slice, side, setup->posed + side, region + side)) return false;
+        if (slice->body[side].num_triangles == 0) return false;
+        if (side == 0) break;
+        region[0].box = scree_filter_kept_box(slice->body + 1);
+        region[0].box.upper.z = SCREE_REAL_MAX;
+    }
+    scree_box box = scree_filter_kept_box(slice->body);
+    box.lower.z = -SCREE_REAL_MAX;
+    scree_filter_shrink(slice->body + 1, box);
+    slice->extent = scree_max(scree_box_reach(scree_filter_kept_box(slice->body)),
+                              scree_box_reach(scree_filter_kept_box(slice->body + 1)));
+    return slice->body[1].num_triangles > 0;
+}
+
+/// Crossings and inside counts. False if there are too many.
+SCREE_FN bool scree_overlap_collect(scree_overlap_slice *slice, scree_overlap_scheme scheme)
+{
+    slice->num_crossings = 0;
+    for (int32_t side = 0; side < 2; ++side)
+    {
+        if (scree_overlap_find_crossings(slice, side, scheme)) continue;
+        slice->lack = SCREE_LACK_CROSSINGS;
+        return false;
+    }
+    return true;
+}
+
+SCREE_FN scree_overlap_result scree_overlap_nothing(scree_overlap_status status)
+{
+    scree_overlap_result result;
+    result.volume = 0;
+    result.area_vector = scree_vec3_zero();
+    result.arm = scree_vec3_zero();
+    result.normal = scree_vec3_zero();
+    result.indentation = 0;
+    result.residual = 0;
+    result.status = status;
+    result.used_fallback = false;
+    return result;
+}
+
+/// Below this volume, in units of A, the normal means nothing: 10 eps L l^2, or less for an overlap of small area.
+SCREE_FN bool scree_overlap_has_normal(const scree_overlap_setup *setup, const scree_overlap_sums *sums)
+{
+    const scree_real larger = scree_max(setup->extents[0], setup->extents[1]);
+    const scree_real smaller = scree_min(setup->extents[0], setup->extents[1]);
+    const scree_real volume = sums->six_volume / 6;
+    const scree_real unit = SCREE_REAL_EPSILON * larger;
+    if (volume <= 10 * unit * smaller * smaller && volume <= 1000 * unit * sums->area) return false;
+    return scree_vec3_length(sums->area_vector) / 2 > 64 * unit * smaller &&
+           scree_vec3_length(sums->area_vector) / 2 > 64 * SCREE_REAL_EPSILON * sums->area;
+}
+
+/// Sums to a result in world axes.
+SCREE_FN scree_overlap_result scree_overlap_to_world(const scree_overlap_slice *slice, const scree_overlap_setup *setup,
+                                                     const scree_overlap_sums *sums, const scree_pose *pose_a)
+{
+    scree_overlap_result result = scree_overlap_nothing(SCREE_OVERLAP_NONE);
+    const scree_real scale = pose_a->scale;
+    const scree_real volume = sums->six_volume / 6;
+    result.residual = sums->residual;
+    result.volume = volume * scale * scale * scale;
+    if (!(volume > 0)) return result;
+
+    // the centroid lies in the box of the points, whatever noise says
+    scree_vec3 centre = scree_vec3_add_scaled(sums->middle, sums->moment, 1 / (4 * sums->six_volume));
+    centre = scree_vec3_max(sums->box.lower, scree_vec3_min(sums->box.upper, centre));
+    const scree_mat3 rotation = scree_mat3_from_quat(pose_a->orientation);
+    const scree_vec3 arm = scree_frame_turn_back(&setup->frame, scree_vec3_add(centre, setup->frame.shift));
+    result.arm = scree_vec3_scale(scree_mat3_apply(rotation, arm), scale);
+    const scree_vec3 area_vector = scree_mat3_apply(rotation, scree_frame_turn_back(&setup->frame, sums->area_vector));
+    result.area_vector = scree_vec3_scale(area_vector, scale * scale / 2);
+    result.status = SCREE_OVERLAP_NO_NORMAL;
+    if (!scree_overlap_has_normal(setup, sums)) return result;
+
+    const scree_vec3 n = scree_vec3_scale(sums->area_vector, 1 / scree_vec3_length(sums->area_vector));
+    result.status = SCREE_OVERLAP_TOUCHING;
+    result.normal = scree_vec3_scale(area_vector, 1 / scree_vec3_length(area_vector));
+    result.indentation = scale * scree_overlap_extent_along(slice, sums->middle, n);
+    return result;
+}
+
+/// Overlap of a pair as one result.
+SCREE_FN scree_overlap_result scree_overlap_pair_compute(const scree_overlap_pair *pair,
+                                                         const scree_overlap_options *options,
+                                                         scree_overlap_slice *slice)
+{
+    slice->lack = SCREE_LACK_NOTHING;
+    scree_overlap_setup setup;
+    if (scree_overlap_spheres_apart(pair) || !scree_overlap_set_up(pair, &setup))
+        return scree_overlap_nothing(SCREE_OVERLAP_NONE);
+    if (!scree_overlap_filter(slice, &setup))
+    {
+        const bool is_full = slice->lack != SCREE_LACK_NOTHING;
+        return scree_overlap_nothing(is_full ? SCREE_OVERLAP_WORKSPACE_FULL : SCREE_OVERLAP_NONE);
+    }
+    for (int32_t side = 0; side < 2; ++side)
+    {
+        scree_filter_finish_triangles(slice->body + side);
+        if (scree_overlap_make_edges(slice->body + side, pair->shape[side])) continue;
+        slice->lack = SCREE_LACK_PIECES;
+        return scree_overlap_nothing(SCREE_OVERLAP_WORKSPACE_FULL);
+    }
+
+    scree_overlap_sums sums;
+    scree_overlap_scheme scheme = options->scheme;
+    bool used_fallback = false;
+    for (int32_t side = 0; side < 2; ++side) scree_overlap_find_inside(slice, side);
+    for (;;)
+    {
+        if (!scree_overlap_collect(slice, scheme)) return scree_overlap_nothing(SCREE_OVERLAP_WORKSPACE_FULL);
+        const bool is_closed = scree_overlap_sum(slice, &sums);
+        if (scheme == SCREE_OVERLAP_HIERARCHY || (is_closed && sums.residual <= SCREE_RESIDUAL_LIMIT)) break;
+        scheme = SCREE_OVERLAP_HIERARCHY;
+        used_fallback = true;
+        scree_overlap_forget_feet(slice);
+    }
+    scree_overlap_result result = scree_overlap_to_world(slice, &setup, &sums, pair->pose[0]);
+    result.used_fallback = used_fallback;
+    return result;
+}
+
+#endif

@@ -1,0 +1,93 @@
+/// \file overlap_parts.h
+/// What the steps of one overlap share: the kept pieces of the two bodies, the crossings and segments found, and the
+/// buffers that hold them. All coordinates are in the working frame (overlap_frame_kernel.h).
+#ifndef SCREE_OVERLAP_PARTS_H
+#define SCREE_OVERLAP_PARTS_H
+
+#include "contact/overlap.h"
+
+/// A triangle that can take part. Its corners are vertices of the same body.
+typedef struct scree_overlap_triangle
+{
+    int32_t v[3];
+    int32_t id;          ///< in the shape
+    int32_t reversed;    ///< bit k: side k, from v[k] to v[k + 1], runs from the higher vertex id to the lower
+    scree_real size;     ///< bound from above on the length of its sides
+    scree_vec3 normal;   ///< outward, length twice the area
+    scree_vec3 foot;     ///< of the contact's middle on the plane, relative to the middle; once has_foot
+    scree_vec3 boundary; ///< sum of p x q over the boundary of the part inside the other body: twice its area vector
+    bool has_foot;
+} scree_overlap_triangle;
+
+/// An edge of which both triangles are kept; no other can cross anything or end inside.
+typedef struct scree_overlap_edge
+{
+    int32_t v[2];    ///< lower vertex id first: every interpolation runs this way
+    int32_t left;    ///< triangle in which the edge runs v[0] to v[1]
+    int32_t right;   ///< the other one
+    scree_real size; ///< bound from above on its length
+    scree_vec3 foot; ///< point of the edge nearest to the contact's middle, relative to the middle; once has_foot
+    bool has_foot;
+} scree_overlap_edge;
+
+/// Kept pieces of one body.
+typedef struct scree_overlap_body
+{
+    scree_vec3 *points;                ///< (max_vertices)
+    int32_t *vertex_id;                ///< (max_vertices) in the shape
+    int32_t *inside;                   ///< (max_vertices) how often the vertex lies inside the other body: 0 or 1
+    scree_overlap_triangle *triangles; ///< (max_triangles)
+    scree_box *triangle_boxes;         ///< (max_triangles)
+    scree_overlap_edge *edges;         ///< (max_edges)
+    scree_box *edge_boxes;             ///< (max_edges)
+    int32_t *vertex_slot;              ///< (max_shape_vertices) place of a kept vertex of the shape, else anything
+    int32_t *triangle_slot;            ///< (max_shape_triangles) the same for triangles
+    int32_t num_vertices, max_vertices;
+    int32_t num_triangles, max_triangles;
+    int32_t num_edges, max_edges;
+    int32_t max_shape_vertices, max_shape_triangles;
+} scree_overlap_body;
+
+/// An edge of one body passes through a triangle of the other.
+typedef struct scree_overlap_crossing
+{
+    scree_vec3 point;
+    int32_t edge;
+    int32_t triangle;
+    int32_t sign;    ///< x12 or x21: +1 where an edge of A enters B, -1 where an edge of B enters A
+    int32_t is_of_b; ///< 1: the edge is of B, the triangle of A
+} scree_overlap_crossing;
+
+/// The two triangles meet between the points of two crossings, p to q. While it is being paired, `next` chains the
+/// open ends of one pair of triangles.
+typedef struct scree_overlap_segment
+{
+    int32_t triangle_a, triangle_b;
+    int32_t p, q; ///< crossings; -1 while open
+    int32_t next;
+} scree_overlap_segment;
+
+/// Which capacity was too small.
+typedef enum scree_overlap_lack
+{
+    SCREE_LACK_NOTHING,
+    SCREE_LACK_PIECES,    ///< kept vertices, triangles, edges
+    SCREE_LACK_SHAPE,     ///< slots per vertex or triangle of a shape
+    SCREE_LACK_CROSSINGS, ///< crossings, segments and their table
+} scree_overlap_lack;
+
+/// Everything one overlap works on: borrowed buffers of one thread.
+typedef struct scree_overlap_slice
+{
+    scree_overlap_body body[2];        ///< A and B
+    scree_overlap_crossing *crossings; ///< (max_crossings)
+    scree_overlap_segment *segments;   ///< (2 max_crossings)
+    int32_t *table;                    ///< (max_table) open ends by pair of triangles
+    int32_t num_crossings, max_crossings;
+    int32_t num_segments;
+    int32_t max_table; ///< a power of two, at least 4 max_crossings
+    scree_overlap_lack lack;
+    scree_real extent; ///< largest coordinate in magnitude of the kept vertices
+} scree_overlap_slice;
+
+#endif

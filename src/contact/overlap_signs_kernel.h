@@ -1,0 +1,72 @@
+/// \file overlap_signs_kernel.h
+/// Crossings decided by plain orientation signs where every sign that matters clears a margin of 64 eps L, far above
+/// its rounding error. Whatever is certain here is certain in the hierarchy too, so the two may be mixed freely, one
+/// edge against one triangle at a time.
+#ifndef SCREE_OVERLAP_SIGNS_KERNEL_H
+#define SCREE_OVERLAP_SIGNS_KERNEL_H
+
+#include "contact/overlap_hierarchy_kernel.h"
+
+/// Margin of certainty over eps L, L the largest coordinate in play.
+#define SCREE_SIGN_MARGIN 64
+
+/// What the signs say about one edge and one triangle.
+typedef enum scree_sign_verdict
+{
+    SCREE_SIGN_APART = 0,
+    SCREE_SIGN_ENTERS = 1,  ///< the edge, lower id first, goes from the outer side of the triangle to the inner
+    SCREE_SIGN_LEAVES = -1, ///< and the other way round
+    SCREE_SIGN_UNSURE = 2
+} scree_sign_verdict;
+
+/// A triangle for the signs: outward normal of twice its area and a bound on its sides.
+typedef struct scree_signed_face
+{
+    scree_face face;
+    scree_vec3 normal;
+    scree_real size;
+} scree_signed_face;
+
+/// Six times the volume of the tetrahedron of a line and side k of the face: > 0 for all three sides if the line goes
+/// against the normal through the face.
+SCREE_FN scree_real scree_line_orientation(const scree_line *line, scree_vec3 direction, const scree_face *face,
+                                           int32_t k)
+{
+    const scree_vec3 from = scree_vec3_sub(face->p[k], line->p[0]);
+    const scree_vec3 side = scree_vec3_sub(face->p[k == 2 ? 0 : k + 1], face->p[k]);
+    return scree_vec3_dot(from, scree_vec3_cross(direction, side));
+}
+
+/// Does the edge, of length at most `size`, pass through the triangle? `tolerance` is 64 eps L. Sets the point if so.
+SCREE_FN scree_sign_verdict scree_edge_sign(const scree_line *edge, scree_real size, const scree_signed_face *g,
+                                            scree_real tolerance, scree_vec3 *point)
+{
+    // heights of the ends above the plane
+    const scree_real plane_margin = tolerance * g->size * g->size;
+    const scree_real h0 = scree_vec3_dot(g->normal, scree_vec3_sub(edge->p[0], g->face.p[0]));
+    const scree_real h1 = scree_vec3_dot(g->normal, scree_vec3_sub(edge->p[1], g->face.p[0]));
+    if ((h0 > plane_margin && h1 > plane_margin) || (h0 < -plane_margin && h1 < -plane_margin)) return SCREE_SIGN_APART;
+    const bool is_entering = h0 > plane_margin && h1 < -plane_margin;
+    const bool is_leaving = h0 < -plane_margin && h1 > plane_margin;
+    if (!is_entering && !is_leaving) return SCREE_SIGN_UNSURE;
+
+    // the line must pass all three sides on their inner side
+    const scree_vec3 direction = scree_vec3_sub(edge->p[1], edge->p[0]);
+    const scree_real side_margin = tolerance * size * g->size;
+    bool is_unsure = false;
+    for (int32_t k = 0; k < 3; ++k)
+    {
+        const scree_real turn = scree_line_orientation(edge, direction, &g->face, k);
+        const scree_real inward = is_entering ? turn : -turn;
+        if (inward < -side_margin) return SCREE_SIGN_APART;
+        is_unsure = is_unsure || inward <= side_margin;
+    }
+    if (is_unsure) return SCREE_SIGN_UNSURE;
+
+    // from the nearer end
+    if (scree_abs(h0) <= scree_abs(h1)) *point = scree_vec3_add_scaled(edge->p[0], direction, h0 / (h0 - h1));
+    else *point = scree_vec3_add_scaled(edge->p[1], direction, h1 / (h0 - h1));
+    return is_entering ? SCREE_SIGN_ENTERS : SCREE_SIGN_LEAVES;
+}
+
+#endif

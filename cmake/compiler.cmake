@@ -17,6 +17,12 @@ set(CMAKE_CXX_FLAGS_RELEASE ${CMAKE_C_FLAGS_RELEASE})
 set(CMAKE_CXX_FLAGS_DEBUG ${CMAKE_C_FLAGS_DEBUG})
 set(CMAKE_CXX_FLAGS_CHECKED ${CMAKE_C_FLAGS_CHECKED})
 
+# GCC 12.2 makes vfmsubadd of straight-line code whatever -ffp-contract says, if the processor has it.
+set(may_have_fma ${SCREE_NATIVE})
+if(NOT CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64")
+    set(may_have_fma ON)
+endif()
+
 find_package(OpenMP REQUIRED COMPONENTS C)
 
 add_library(scree_options INTERFACE)
@@ -24,6 +30,7 @@ target_compile_options(scree_options INTERFACE
     $<$<COMPILE_LANGUAGE:C>:-Wall;-Wextra;-Werror>
     # a*b + c keeps its two roundings: the same bits from every compiler, processor and the CUDA kernels
     $<$<COMPILE_LANGUAGE:C,CXX>:-ffp-contract=off>
+    $<$<AND:$<BOOL:${may_have_fma}>,$<C_COMPILER_ID:GNU>,$<COMPILE_LANGUAGE:C,CXX>>:-fno-tree-slp-vectorize>
     # nobody reads errno after sqrt(); values are not touched by this, unlike by fast-math
     $<$<COMPILE_LANGUAGE:C>:-fno-math-errno>
     $<$<AND:$<BOOL:${SCREE_NATIVE}>,$<COMPILE_LANGUAGE:C,CXX>>:-march=native>)

@@ -1,5 +1,6 @@
 /// \file io.h
-/// The folder of a run: scene.yaml, series.csv, frames.vtkhdf, checkpoint.h5, summary.json.
+/// The folder of a run: scene.yaml, series.csv, frames.vtkhdf, walls.vtkhdf, contacts.vtkhdf, checkpoint.h5,
+/// summary.json. Formats: docs/format_hdf5.md.
 /// Whole files are written to a temporary name and renamed; files that grow stay readable after a kill at any moment.
 #ifndef SCREE_IO_H
 #define SCREE_IO_H
@@ -16,24 +17,30 @@ extern "C"
 
     /// Opens the folder for a new run (made if missing; refused if it holds a run and `replace` is false), writes
     /// scene.yaml. With `restart` an existing run is continued: series and frames after the checkpoint's time are
-    /// dropped.
+    /// dropped; the simulation must have been loaded from the checkpoint before. The folder is locked against other
+    /// runs until it is closed. SCREE_INVALID_INPUT, SCREE_OUT_OF_MEMORY, SCREE_WRITE_FAILED, SCREE_READ_FAILED.
     scree_status scree_run_folder_open(scree_run_folder **folder, const char *path, const scree_scene_file *file,
                                        const scree_simulation *simulation, bool replace, bool restart,
                                        scree_report *report);
     /// One row of series.csv. SCREE_WRITE_FAILED.
     scree_status scree_run_folder_write_series(scree_run_folder *folder, const scree_simulation *simulation,
                                                scree_report *report);
-    /// One time step of frames.vtkhdf: particles as PolyData with connectivity written once, contacts as lines.
+    /// Largest energy [J] in motion, in springs or dissipated of all rows of series.csv, those before a restart too:
+    /// what an error of the energy balance is compared with.
+    double scree_run_folder_energy_turned_over(const scree_run_folder *folder);
+    /// One time step of frames.vtkhdf (surfaces of the particles, connectivity written once), walls.vtkhdf and
+    /// contacts.vtkhdf (contacts as lines). Nothing happens if there is a frame of this time. SCREE_WRITE_FAILED leaves
+    /// the frames there were.
     scree_status scree_run_folder_write_frame(scree_run_folder *folder, const scree_simulation *simulation,
                                               scree_report *report);
-    /// Everything the state is, to checkpoint.h5.
+    /// Everything the state is, to checkpoint.h5. SCREE_WRITE_FAILED leaves the checkpoint there was.
     scree_status scree_run_folder_write_checkpoint(scree_run_folder *folder, const scree_simulation *simulation,
                                                    scree_report *report);
 
     /// What summary.json tells beyond the state.
     typedef struct scree_run_result
     {
-        const char *outcome; ///< "finished", "interrupted", "failed"
+        const char *outcome; ///< "finished", "interrupted", "failed"; "failed" is not measured
         double wall_seconds;
         double initial_energy; ///< [J] balance at the start
         double energy_error;   ///< [1] change of the balance over the largest energy turned over
@@ -47,7 +54,9 @@ extern "C"
     scree_status scree_run_folder_close(scree_run_folder *folder, scree_report *report);
 
     /// Replaces the state of a fresh simulation of the same scene by that of a checkpoint. Everything is checked before
-    /// anything is changed: sizes, scene, version, finite numbers.
+    /// anything is changed: sizes, scene, version, finite numbers. The scene may differ in what does not act on the
+    /// particles: name, end, output, repose. SCREE_NOT_FOUND, SCREE_READ_FAILED, SCREE_INVALID_INPUT,
+    /// SCREE_OUT_OF_MEMORY.
     scree_status scree_checkpoint_load(scree_simulation *simulation, const char *path, scree_report *report);
 
 #ifdef __cplusplus

@@ -1,0 +1,186 @@
+/// \file hdf5_file.c
+#define _POSIX_C_SOURCE 200809L
+#include "io/hdf5_file.h"
+
+#include <stdio.h>
+#include <string.h>
+
+scree_hdf5_printing scree_hdf5_silence(void)
+{
+    scree_hdf5_printing printing = {NULL, NULL};
+    H5Eget_auto2(H5E_DEFAULT, &printing.function, &printing.data);
+    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+    return printing;
+}
+
+void scree_hdf5_restore(scree_hdf5_printing printing) { H5Eset_auto2(H5E_DEFAULT, printing.function, printing.data); }
+
+typedef struct reason_text
+{
+    char *text;
+    size_t size;
+} reason_text;
+
+/// Keeps the first, deepest entry; of a failed system call only what the system said.
+static herr_t keep_first(unsigned n, const H5E_error2_t *error, void *data)
+{
+    const reason_text *reason = data;
+    if (n > 0 || error->desc == NULL) return 0;
+    static const char mark[] = "error message = '";
+    const char *said = strstr(error->desc, mark);
+    if (said == NULL)
+    {
+        snprintf(reason->text, reason->size, "%s", error->desc);
+        return 0;
+    }
+    said += sizeof mark - 1;
+    snprintf(reason->text, reason->size, "%.*s", (int)strcspn(said, "'"), said);
+    return 0;
+}
+
+void scree_hdf5_reason(char *text, size_t size)
+{
+    snprintf(text, size, "unknown reason");
+    const reason_text reason = {text, size};
+    H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_first, (void *)&reason);
+}
+
+void scree_hdf5_fault(scree_report *report, const char *path, const char *verb)
+{
+    char reason[512];
+    scree_hdf5_reason(reason, sizeof reason);
+    scree_report_add(report, "%s could not be %s: %s", path, verb, reason);
+}
+
+hid_t scree_hdf5_memory_type(scree_field_type type)
+{
+    switch (type)
+    {
+    case SCREE_FIELD_REAL:
+        return sizeof(scree_real) == sizeof(double) ? H5T_NATIVE_DOUBLE : H5T_NATIVE_FLOAT;
+    case SCREE_FIELD_DOUBLE:
+        return H5T_NATIVE_DOUBLE;
+    case SCREE_FIELD_FLOAT:
+        return H5T_NATIVE_FLOAT;
+    case SCREE_FIELD_INT32:
+        return H5T_NATIVE_INT32;
+    case SCREE_FIELD_INT64:
+        return H5T_NATIVE_INT64;
+    case SCREE_FIELD_UINT8:
+        return H5T_NATIVE_UINT8;
+    }
+    return -1;
+}
+
+hid_t scree_hdf5_file_type(scree_field_type type)
+{
+    switch (type)
+    {
+    case SCREE_FIELD_REAL:
+        return sizeof(scree_real) == sizeof(double) ? H5T_IEEE_F64LE : H5T_IEEE_F32LE;
+    case SCREE_FIELD_DOUBLE:
+        return H5T_IEEE_F64LE;
+    case SCREE_FIELD_FLOAT:
+        return H5T_IEEE_F32LE;
+    case SCREE_FIELD_INT32:
+        return H5T_STD_I32LE;
+    case SCREE_FIELD_INT64:
+        return H5T_STD_I64LE;
+    case SCREE_FIELD_UINT8:
+        return H5T_STD_U8LE;
+    }
+    return -1;
+}
+
+/// Access without locks: a viewer may have the file open.
+static hid_t access_properties(void)
+{
+    const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+    H5Pset_file_locking(access, false, true);
+    // closing a file closes what a failure left open in it
+    H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);
+    // metadata of a file close together, in few writes
+    H5Pset_meta_block_size(access, 65536);
+    return access;
+}
+
+hid_t scree_hdf5_create(const char *path, scree_report *report)
+{
+    const hid_t access = access_properties(), properties = scree_hdf5_properties(H5P_FILE_CREATE);
+    const hid_t file = H5Fcreate(path, H5F_ACC_TRUNC, properties, access);
+    if (file < 0) scree_hdf5_fault(report, path, "made");
+    H5Pclose(properties);
+    H5Pclose(access);
+    return file;
+}
+
+hid_t scree_hdf5_open(const char *path, bool is_writable, scree_report *report)
+{
+    const hid_t access = access_properties();
+    const hid_t file = H5Fopen(path, is_writable ? H5F_ACC_RDWR : H5F_ACC_RDONLY, access);
+    if (file < 0) scree_hdf5_fault(report, path, "opened");
+    H5Pclose(access);
+    return file;
+}
+
+hid_t scree_hdf5_properties(hid_t cls)
+{
+    const hid_t properties = H5Pcreate(cls);
+    H5Pset_obj_track_times(properties, false);
+    return properties;
+}
+
+bool scree_hdf5_put_text(hid_t object, const char *name, const char *text)
+{
+    const hid_t type = H5Tcopy(H5T_C_S1);
+    H5Tset_size(type, strlen(text) > 0 ? strlen(text) : 1);
+    H5Tset_strpad(type, H5T_STR_NULLPAD);
+    const hid_t space = H5Screate(H5S_SCALAR);
+    const hid_t attribute = H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
+    const bool is_written = attribute >= 0 && H5Awrite(attribute, type, text) >= 0;
+    if (attribute >= 0) H5Aclose(attribute);
+    H5Sclose(space);
+    H5Tclose(type);
+    return is_written;
+}
+
+bool scree_hdf5_put_number(hid_t object, const char *name, scree_field_type type, const void *value)
+{
+    const hid_t space = H5Screate(H5S_SCALAR);
+    const hid_t attribute = H5Acreate2(object, name, scree_hdf5_file_type(type), space, H5P_DEFAULT, H5P_DEFAULT);
+    const bool is_written = attribute >= 0 && H5Awrite(attribute, scree_hdf5_memory_type(type), value) >= 0;
+    if (attribute >= 0) H5Aclose(attribute);
+    H5Sclose(space);
+    return is_written;
+}
+
+bool scree_hdf5_get_number(hid_t object, const char *name, scree_field_type type, void *value)
+{
+    const hid_t attribute = H5Aopen(object, name, H5P_DEFAULT);
+    if (attribute < 0) return false;
+    const hid_t space = H5Aget_space(attribute);
+    const bool is_read =
+        H5Sget_simple_extent_npoints(space) == 1 && H5Aread(attribute, scree_hdf5_memory_type(type), value) >= 0;
+    H5Sclose(space);
+    H5Aclose(attribute);
+    return is_read;
+}
+
+bool scree_hdf5_get_text(hid_t object, const char *name, char *text, size_t size)
+{
+    const hid_t attribute = H5Aopen(object, name, H5P_DEFAULT);
+    if (attribute < 0) return false;
+    memset(text, 0, size);
+    const hid_t type = H5Aget_type(attribute);
+    const bool is_read =
+        H5Tget_class(type) == H5T_STRING && H5Tget_size(type) < size && H5Aread(attribute, type, text) >= 0;
+    H5Tclose(type);
+    H5Aclose(attribute);
+    return is_read;
+}
+
+bool scree_hdf5_describe(hid_t dataset, const scree_field *field)
+{
+    return scree_hdf5_put_text(dataset, "unit", field->unit) &&
+           scree_hdf5_put_text(dataset, "description", field->text);
+}

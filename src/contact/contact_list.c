@@ -15,10 +15,15 @@
     X(normal_force)             \
     X(tangential_force)         \
     X(elastic_force)            \
+    X(moment)                   \
+    X(elastic_work)             \
     X(spring_work)              \
     X(is_slipping)              \
+    X(is_twisting)              \
     X(spring_force)             \
     X(tangential_stiffness)     \
+    X(torsion)                  \
+    X(spring_energy)            \
     X(elastic_energy)
 
 scree_status scree_contact_list_reserve(scree_contact_list *list, int64_t num_contacts, int64_t num_pairs)

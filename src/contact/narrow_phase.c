@@ -106,7 +106,7 @@ static scree_status find_all(scree_narrow_phase *narrow_phase, const scree_bodie
     struct scree_narrow_phase_buffers *b = narrow_phase->buffers;
     for (int t = 0; t < b->num_workspaces; ++t) b->counts[t] = (scree_narrow_phase_counts){0};
     int has_failed = 0;
-#pragma omp parallel for schedule(dynamic, 32) reduction(| : has_failed)
+#pragma omp parallel for schedule(dynamic, 8) reduction(| : has_failed) if (num_pairs >= 16)
     for (int64_t p = 0; p < num_pairs; ++p)
         has_failed |= find_pair(narrow_phase, bodies, pairs[p], p, omp_get_thread_num()) != SCREE_OK;
 
@@ -141,7 +141,7 @@ static scree_status compact(const struct scree_narrow_phase_buffers *b, const sc
     if (status != SCREE_OK) return status;
     list->num_contacts = num_contacts;
 
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (num_pairs >= 1024)
     for (int64_t p = 0; p < num_pairs; ++p)
     {
         int64_t c = list->first_of_pair[p];

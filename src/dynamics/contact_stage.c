@@ -28,7 +28,7 @@ static void account_ended(scree_simulation *s)
     {
         if (s->buffers->is_continued[o]) continue;
         normal += (double)old->elastic_energy[o];
-        tangential += (double)scree_spring_energy(old->spring_force[o], old->tangential_stiffness[o]);
+        tangential += (double)old->spring_energy[o];
     }
     s->energies.hysteresis += normal;
     s->energies.friction += tangential;
@@ -143,6 +143,7 @@ scree_status scree_account_work(scree_simulation *simulation)
     {
         simulation->energies.damping += (double)b->work_sums[k].damping;
         simulation->energies.friction += (double)b->work_sums[k].friction;
+        simulation->energies.hysteresis += (double)b->work_sums[k].hysteresis;
         simulation->energies.input += (double)b->work_sums[k].input;
         if (!((double)b->work_sums[k].smallest_step_squared >= smallest_squared))
             smallest_squared = (double)b->work_sums[k].smallest_step_squared;

@@ -11,7 +11,7 @@ static scree_real largest_displacement(const scree_simulation *s, int64_t begin,
 {
     const scree_step_buffers *b = s->buffers;
     scree_real largest = 0;
-#pragma omp parallel for schedule(static) reduction(max : largest)
+#pragma omp parallel for schedule(static) reduction(max : largest) if (end - begin >= 1024)
     for (int64_t i = begin; i < end; ++i)
     {
         const scree_real radius = s->shape_views[b->shape[i]].bounding_radius * b->pose[i].scale;

@@ -49,8 +49,7 @@ scree_energies scree_simulation_energies(const scree_simulation *simulation)
     for (int64_t c = 0; c < contacts->num_contacts; ++c)
     {
         e.elastic_normal += (double)contacts->elastic_energy[c];
-        e.elastic_tangential +=
-            (double)scree_spring_energy(contacts->spring_force[c], contacts->tangential_stiffness[c]);
+        e.elastic_tangential += (double)contacts->spring_energy[c];
     }
     return e;
 }
@@ -70,6 +69,7 @@ uint64_t scree_simulation_hash(const scree_simulation *simulation)
     hash = scree_hash_bytes(hash, p->force, n * sizeof *p->force);
     hash = scree_hash_bytes(hash, p->torque, n * sizeof *p->torque);
     hash = scree_hash_bytes(hash, contacts->bodies, m * sizeof *contacts->bodies);
+    hash = scree_hash_bytes(hash, contacts->torsion, m * sizeof *contacts->torsion);
     hash = scree_hash_bytes(hash, contacts->spring_force, m * sizeof *contacts->spring_force);
     return scree_hash_bytes(hash, contacts->tangential_stiffness, m * sizeof *contacts->tangential_stiffness);
 }

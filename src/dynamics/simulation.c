@@ -33,7 +33,7 @@ static void correct(scree_simulation *s)
 static int64_t find_unstable(const scree_particles *particles)
 {
     int64_t first = INT64_MAX;
-#pragma omp parallel for schedule(static) reduction(min : first)
+#pragma omp parallel for schedule(static) reduction(min : first) if (particles->num_particles >= 4096)
     for (int64_t i = 0; i < particles->num_particles; ++i)
     {
         const scree_vec3 x = particles->position[i], l = particles->angular_momentum[i];

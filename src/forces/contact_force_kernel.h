@@ -37,13 +37,6 @@ typedef struct scree_contact_force_args
     scree_real time_step; ///< [s]
 } scree_contact_force_args;
 
-/// Energy of a tangential spring [J].
-SCREE_FN scree_real scree_spring_energy(scree_vec3 spring_force, scree_real tangential_stiffness)
-{
-    if (!(tangential_stiffness > 0)) return 0;
-    return scree_vec3_dot(spring_force, spring_force) / (2 * tangential_stiffness);
-}
-
 SCREE_FN void scree_contact_force_at(scree_contact_force_args a, int64_t c)
 {
     const scree_candidate_pair pair = a.contacts.bodies[c];
@@ -56,16 +49,20 @@ SCREE_FN void scree_contact_force_at(scree_contact_force_args a, int64_t c)
     k.indentation = a.contacts.indentation[c];
     k.normal = a.contacts.normal[c];
     k.relative_velocity = scree_relative_velocity(&a.bodies, pair.i, pair.j, a.contacts.arm[c]);
+    k.relative_rotation = scree_vec3_sub(a.bodies.angular_velocity[pair.i], a.bodies.angular_velocity[pair.j]);
     k.effective_mass = 1 / (a.bodies.inverse_mass[pair.i] + a.bodies.inverse_mass[pair.j]);
     k.time_step = a.time_step;
     k.spring_force = scree_vec3_zero();
+    k.torsion = 0;
     k.tangential_stiffness = 0;
-    scree_real elastic_energy = 0;
+    scree_real elastic_energy = 0, spring_energy = 0;
     const int64_t old = a.old_of_contact[c];
     if (old >= 0)
     {
         k.spring_force = a.old_contacts.spring_force[old];
         k.tangential_stiffness = a.old_contacts.tangential_stiffness[old];
+        k.torsion = a.old_contacts.torsion[old];
+        spring_energy = a.old_contacts.spring_energy[old];
         elastic_energy = a.old_contacts.elastic_energy[old];
     }
 
@@ -78,9 +75,13 @@ SCREE_FN void scree_contact_force_at(scree_contact_force_args a, int64_t c)
     a.contacts.is_slipping[c] = f.is_slipping ? 1 : 0;
     a.contacts.spring_force[c] = f.spring_force;
     a.contacts.tangential_stiffness[c] = f.tangential_stiffness;
-    a.contacts.elastic_energy[c] = elastic_energy;
-    a.contacts.spring_work[c] = scree_spring_energy(f.spring_force, f.tangential_stiffness) -
-                                scree_spring_energy(k.spring_force, k.tangential_stiffness);
+    a.contacts.moment[c] = f.moment;
+    a.contacts.is_twisting[c] = f.is_twisting ? 1 : 0;
+    a.contacts.torsion[c] = f.torsion;
+    a.contacts.elastic_energy[c] = f.elastic_energy;
+    a.contacts.elastic_work[c] = f.elastic_energy - elastic_energy;
+    a.contacts.spring_energy[c] = f.spring_energy;
+    a.contacts.spring_work[c] = f.spring_energy - spring_energy;
 }
 
 #endif

@@ -16,6 +16,7 @@ typedef struct scree_force_law
     scree_real friction_coefficient;    ///< [1]
     int32_t model;                      ///< index in the registry
     bool has_tangential_spring;
+    bool has_moments;    ///< springs and dashpots are spread over the contact area
     bool has_attraction; ///< total normal force may be attractive
 } scree_force_law;
 

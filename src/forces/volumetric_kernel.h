@@ -5,8 +5,15 @@
 ///     k_n  = 2 E* sqrt(V/(pi d)),  k_t = 8 G* sqrt(V/(pi d))
 ///     F_t += -k_t dx_t, scaled by k_t/k_t_old while unloading; F_t - 2 g sqrt(m* k_t) v_t is capped at mu F_n
 ///
-/// With c = 4/(3 sqrt(pi)) it is Hertz for spheres, where V -> pi R* d^2. V d and V/d are continuous while a contact
-/// forms and ends; the law is not the gradient of an energy.
+/// Moments: springs and dashpots are spread evenly over a disc of the contact's radius a = sqrt(V/(pi d)),
+///
+///     M_n += -k_t a^2/2 w_n dt;  M_n - 2 g sqrt(m* k_t) a^2/2 w_n is capped at 2/3 a mu F_n     Marshall (2009),
+///     twisting M_t  = -2 g sqrt(m* k_n) a^2/4 w_t, capped at a/4 F_n (beyond it part of the disc would pull)
+///
+/// Without them a body that lies flat on one contact spins on for ever: at the contact point it does not slide.
+///
+/// With c = 4/(3 sqrt(pi)) the normal force is Hertz's for spheres, where V -> pi R* d^2. V d and V/d are continuous
+/// while a contact forms and ends; the law is not the gradient of an energy.
 #ifndef SCREE_VOLUMETRIC_KERNEL_H
 #define SCREE_VOLUMETRIC_KERNEL_H
 
@@ -19,9 +26,11 @@ typedef struct scree_contact_kinematics
     scree_real indentation;          ///< [m] > 0
     scree_vec3 normal;               ///< [1] unit, from j towards i
     scree_vec3 relative_velocity;    ///< [m/s] of i against j at the contact point
+    scree_vec3 relative_rotation;    ///< [rad/s] angular velocity of i minus that of j
     scree_real effective_mass;       ///< [kg]
     scree_real time_step;            ///< [s]
     scree_vec3 spring_force;         ///< [N] of the step before, 0 for a new contact
+    scree_real torsion;              ///< [N m] of the step before, 0 for a new contact
     scree_real tangential_stiffness; ///< [N/m] of the step before, 0 for a new contact
 } scree_contact_kinematics;
 
@@ -31,10 +40,16 @@ typedef struct scree_contact_force
     scree_vec3 normal_force;         ///< [N]
     scree_vec3 tangential_force;     ///< [N]
     scree_vec3 spring_force;         ///< [N] elastic part of the tangential force
+    scree_vec3 moment;               ///< [N m] torsion and rocking
+    scree_real torsion;              ///< [N m] elastic part of the moment about the normal
     scree_real elastic_force;        ///< [N] elastic part of the normal force
+    scree_real elastic_energy;       ///< [J] 2/5 F d, exact for Hertz
+    scree_real spring_energy;        ///< [J] of the tangential and the torsion spring
+    scree_real contact_radius;       ///< [m] a
     scree_real normal_stiffness;     ///< [N/m] k_n
     scree_real tangential_stiffness; ///< [N/m] k_t
     bool is_slipping;
+    bool is_twisting; ///< the torsion is at its limit
 } scree_contact_force;
 
 /// History turned into the present tangent plane, keeping its length.
@@ -74,6 +89,47 @@ SCREE_FN void scree_tangential_force(const scree_force_law *law, const scree_con
     }
     f->tangential_force = force;
     f->spring_force = spring;
+    f->spring_energy = k_t > 0 ? scree_vec3_dot(spring, spring) / (2 * k_t) : 0;
+}
+
+/// Torsion and rocking of the contact area. Fills the moments of *f.
+SCREE_FN void scree_contact_moment(const scree_force_law *law, const scree_contact_kinematics *k,
+                                   scree_real normal_force, scree_contact_force *f)
+{
+    const scree_real a = f->contact_radius, half_square = a * a / 2;
+    const scree_real twist = scree_vec3_dot(k->relative_rotation, k->normal);
+    const scree_vec3 rocking = scree_vec3_add_scaled(k->relative_rotation, k->normal, -twist);
+
+    // torsion: k_t a^2/2 grows with k_t cubed, as a does with k_t
+    const scree_real twist_damping = 2 * law->damping_ratio * scree_sqrt(k->effective_mass * f->tangential_stiffness);
+    const scree_real stiffness = f->tangential_stiffness * half_square;
+    scree_real torsion = 0;
+    if (law->has_tangential_spring)
+    {
+        torsion = k->torsion;
+        const scree_real ratio =
+            f->tangential_stiffness < k->tangential_stiffness ? f->tangential_stiffness / k->tangential_stiffness : 1;
+        torsion = torsion * (ratio * ratio * ratio) - stiffness * twist * k->time_step;
+    }
+    scree_real moment = torsion - twist_damping * half_square * twist;
+    const scree_real limit = (scree_real)(2.0 / 3.0) * a * law->friction_coefficient * normal_force;
+    f->is_twisting = scree_abs(moment) > limit;
+    if (f->is_twisting)
+    {
+        moment = moment > 0 ? limit : -limit;
+        if (law->has_tangential_spring) torsion = moment;
+    }
+    f->torsion = torsion;
+    if (stiffness > 0) f->spring_energy += torsion * torsion / (2 * stiffness);
+
+    // rocking: dashpots alone, the elastic part is in the way the contact point moves
+    const scree_real rocking_damping =
+        2 * law->damping_ratio * scree_sqrt(k->effective_mass * f->normal_stiffness) * half_square / 2;
+    const scree_real rocking_limit = a / 4 * normal_force;
+    const scree_real rate = scree_vec3_length(rocking);
+    const scree_real wanted = rocking_damping * rate;
+    const scree_real factor = wanted > rocking_limit ? rocking_limit / rate : rocking_damping;
+    f->moment = scree_vec3_add_scaled(scree_vec3_scale(k->normal, moment), rocking, -factor);
 }
 
 SCREE_FN void scree_volumetric_force(const scree_force_law *law, const scree_contact_kinematics *k,
@@ -81,16 +137,23 @@ SCREE_FN void scree_volumetric_force(const scree_force_law *law, const scree_con
 {
     const scree_real inverse_pi = (scree_real)0.31830988618379067154;
     const scree_real contact_radius = scree_sqrt(inverse_pi * (k->volume / k->indentation));
+    f->contact_radius = contact_radius;
     f->normal_stiffness = 2 * law->effective_modulus * contact_radius;
     f->tangential_stiffness = 8 * law->effective_shear_modulus * contact_radius;
     f->elastic_force = law->stiffness_factor * law->effective_modulus * scree_sqrt(k->volume * k->indentation);
 
+    f->elastic_energy = (scree_real)0.4 * f->elastic_force * k->indentation;
     const scree_real approach = -scree_vec3_dot(k->relative_velocity, k->normal);
     const scree_real damping = 2 * law->damping_ratio * scree_sqrt(k->effective_mass * f->normal_stiffness);
     scree_real normal_force = f->elastic_force + damping * approach;
     if (normal_force < 0 && !law->has_attraction) normal_force = 0;
     f->normal_force = scree_vec3_scale(k->normal, normal_force);
-    scree_tangential_force(law, k, scree_max(normal_force, 0), f);
+    const scree_real pressing = scree_max(normal_force, 0);
+    scree_tangential_force(law, k, pressing, f);
+    f->moment = scree_vec3_zero();
+    f->torsion = 0;
+    f->is_twisting = false;
+    if (law->has_moments) scree_contact_moment(law, k, pressing, f);
 }
 
 #endif

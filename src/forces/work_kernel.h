@@ -16,15 +16,16 @@ typedef struct scree_work_sums
 {
     scree_real damping;               ///< [J] dissipated by damping
     scree_real friction;              ///< [J] dissipated by slip
+    scree_real hysteresis;            ///< [J] work against the elastic normal force that its energy did not take up
     scree_real input;                 ///< [J] put in by walls
     scree_real smallest_step_squared; ///< [s^2] smallest m_eff/k_eff
 } scree_work_sums;
 
 typedef struct scree_work_args
 {
-    scree_contact_list contacts; ///< elastic_energy is updated
-    scree_body_motion bodies;    ///< with the velocities of the end of the step
-    const scree_vec3 *inertia;   ///< [kg m^2] (num_particles) principal moments
+    scree_contact_list contacts;
+    scree_body_motion bodies;  ///< with the velocities of the end of the step
+    const scree_vec3 *inertia; ///< [kg m^2] (num_particles) principal moments
     const scree_force_law *laws;
     int32_t num_materials;
     int32_t num_particles;
@@ -54,13 +55,15 @@ SCREE_FN void scree_work_of_contact(const scree_work_args *a, int64_t c, scree_w
     // normal: what the spring takes up and what is damped
     const scree_real elastic = a->contacts.elastic_force[c];
     const scree_real normal = scree_vec3_dot(a->contacts.normal_force[c], n);
-    a->contacts.elastic_energy[c] -= elastic * v_n * a->time_step;
+    sums->hysteresis -= elastic * v_n * a->time_step + a->contacts.elastic_work[c];
     sums->damping -= (normal - elastic) * v_n * a->time_step;
 
-    // tangential: what the spring does not take up is lost
-    const scree_real lost =
-        -scree_vec3_dot(a->contacts.tangential_force[c], v) * a->time_step - a->contacts.spring_work[c];
-    if (a->contacts.is_slipping[c]) sums->friction += lost;
+    // tangential and torsion: what the springs do not take up is lost
+    const scree_vec3 rotation = scree_vec3_sub(a->bodies.angular_velocity[pair.i], a->bodies.angular_velocity[pair.j]);
+    const scree_real power =
+        scree_vec3_dot(a->contacts.tangential_force[c], v) + scree_vec3_dot(a->contacts.moment[c], rotation);
+    const scree_real lost = -power * a->time_step - a->contacts.spring_work[c];
+    if (a->contacts.is_slipping[c] || a->contacts.is_twisting[c]) sums->friction += lost;
     else sums->damping += lost;
 
     // a moving wall works on the particle
@@ -71,7 +74,9 @@ SCREE_FN void scree_work_of_contact(const scree_work_args *a, int64_t c, scree_w
         const scree_vec3 v_wall =
             scree_vec3_add(a->bodies.velocity[pair.j], scree_vec3_cross(a->bodies.angular_velocity[pair.j], arm_j));
         const scree_vec3 f = scree_vec3_add(a->contacts.normal_force[c], a->contacts.tangential_force[c]);
-        sums->input += scree_vec3_dot(f, v_wall) * a->time_step;
+        sums->input +=
+            (scree_vec3_dot(f, v_wall) + scree_vec3_dot(a->contacts.moment[c], a->bodies.angular_velocity[pair.j])) *
+            a->time_step;
     }
 
     // k_n = k_t E*/(4 G*); the stiffer of the two counts
@@ -90,6 +95,7 @@ SCREE_FN void scree_work_at(scree_work_args a, int64_t b)
     scree_work_sums sums;
     sums.damping = 0;
     sums.friction = 0;
+    sums.hysteresis = 0;
     sums.input = 0;
     sums.smallest_step_squared = SCREE_REAL_MAX;
     const int64_t begin = b * SCREE_WORK_BLOCK;

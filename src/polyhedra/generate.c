@@ -48,9 +48,9 @@ scree_status scree_generate_tetrahedron(scree_mesh *mesh, double radius)
 
 scree_status scree_generate_schoenhardt(scree_mesh *mesh, double radius)
 {
-    // bottom and top triangle, and for each side of the prism two triangles about the concave diagonal (k + 1, k + 3)
-    static const int32_t faces[8][3] = {{0, 2, 1}, {3, 4, 5}, {0, 1, 3}, {1, 4, 3},
-                                        {1, 2, 4}, {2, 5, 4}, {2, 0, 5}, {0, 3, 5}};
+    // bottom and top triangle, and for each side of the prism two triangles about its longer diagonal, which is concave
+    static const int32_t faces[8][3] = {{0, 2, 1}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3},
+                                        {1, 2, 5}, {1, 5, 4}, {2, 0, 3}, {2, 3, 5}};
     *mesh = (scree_mesh){0};
     if (!is_length(radius)) return SCREE_INVALID_INPUT;
     const scree_status status = scree_mesh_create(mesh, 6, 8);

@@ -15,13 +15,20 @@ extern "C"
 
     typedef struct scree_run_folder scree_run_folder;
 
-    /// Opens the folder for a new run (made if missing; refused if it holds a run and `replace` is false), writes
-    /// scene.yaml. With `restart` an existing run is continued: series and frames after the checkpoint's time are
-    /// dropped; the simulation must have been loaded from the checkpoint before. The folder is locked against other
-    /// runs until it is closed. SCREE_INVALID_INPUT, SCREE_OUT_OF_MEMORY, SCREE_WRITE_FAILED, SCREE_READ_FAILED.
-    scree_status scree_run_folder_open(scree_run_folder **folder, const char *path, const scree_scene_file *file,
-                                       const scree_simulation *simulation, bool replace, bool restart,
-                                       scree_report *report);
+    /// How a folder is opened.
+    typedef struct scree_run_folder_def
+    {
+        const char *path;             ///< made if missing
+        const scree_scene_file *file; ///< its text becomes scene.yaml
+        bool replace;                 ///< default false: refused if the folder holds a run
+        bool restart;                 ///< goes on with the run that the folder holds
+    } scree_run_folder_def;
+
+    /// Opens the folder for a new run and writes scene.yaml. With `restart` series and frames after the simulation's
+    /// time are dropped; the simulation must have been loaded from the checkpoint before. The folder is locked against
+    /// other runs until it is closed. SCREE_INVALID_INPUT, SCREE_OUT_OF_MEMORY, SCREE_WRITE_FAILED, SCREE_READ_FAILED.
+    scree_status scree_run_folder_open(scree_run_folder **folder, const scree_run_folder_def *def,
+                                       const scree_simulation *simulation, scree_report *report);
     /// One row of series.csv. SCREE_WRITE_FAILED.
     scree_status scree_run_folder_write_series(scree_run_folder *folder, const scree_simulation *simulation,
                                                scree_report *report);

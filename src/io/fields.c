@@ -16,10 +16,10 @@ static const scree_field series_fields[] = {
     ENERGY(rotational, "kinetic energy of rotation"),
     ENERGY(potential, "potential energy of gravity, zero at the origin"),
     ENERGY(elastic_normal, "stored in the normal springs of present contacts"),
-    ENERGY(elastic_tangential, "stored in the tangential springs of present contacts"),
+    ENERGY(elastic_tangential, "stored in the tangential and torsion springs of present contacts"),
     ENERGY(damping, "dissipated by damping so far"),
     ENERGY(friction, "dissipated by slip and lost tangential springs so far"),
-    ENERGY(hysteresis, "stored in normal springs and not given back when contacts ended, so far"),
+    ENERGY(hysteresis, "work against the elastic normal forces that elastic_normal did not take up, so far"),
     ENERGY(input, "put in by moving walls so far"),
     SERIES("balance", "J", "all of the above, input with a minus: stays what it was at the start", SCREE_FIELD_DOUBLE,
            balance),
@@ -78,12 +78,25 @@ static const scree_field contact_fields[] = {
     CONTACT(normal_force, "N", "on i", SCREE_FIELD_REAL, 3),
     CONTACT(tangential_force, "N", "on i", SCREE_FIELD_REAL, 3),
     CONTACT(elastic_force, "N", "elastic part of the normal force", SCREE_FIELD_REAL, 1),
-    CONTACT(spring_work, "J", "change of the tangential spring's energy in the step", SCREE_FIELD_REAL, 1),
-    CONTACT(is_slipping, "1", "1 at the Coulomb limit", SCREE_FIELD_UINT8, 1),
+    CONTACT(moment, "N m", "on i, of the contact area: torsion and rocking", SCREE_FIELD_REAL, 3),
+    CONTACT(elastic_work, "J", "change of elastic_energy in the step", SCREE_FIELD_REAL, 1),
+    CONTACT(spring_work, "J", "change of spring_energy in the step", SCREE_FIELD_REAL, 1),
+    CONTACT(is_slipping, "1", "1 while the tangential force is at the Coulomb limit", SCREE_FIELD_UINT8, 1),
+    CONTACT(is_twisting, "1", "1 while the torsion is at its Coulomb limit", SCREE_FIELD_UINT8, 1),
     CONTACT(spring_force, "N", "elastic part of the tangential force on i", SCREE_FIELD_REAL, 3),
     CONTACT(tangential_stiffness, "N/m", "of the last step", SCREE_FIELD_REAL, 1),
+    CONTACT(torsion, "N m", "elastic part of the moment about the normal, on i", SCREE_FIELD_REAL, 1),
     CONTACT(elastic_energy, "J", "stored in the normal spring", SCREE_FIELD_REAL, 1),
+    CONTACT(spring_energy, "J", "stored in the tangential and the torsion spring", SCREE_FIELD_REAL, 1),
 };
+
+// an array that is added to the particles or contacts must be added to its table, or a restart would lose it
+_Static_assert(sizeof(scree_particles) == offsetof(scree_particles, position) +
+                                              sizeof particle_fields / sizeof particle_fields[0] * sizeof(void *),
+               "every array of the particles has a field");
+_Static_assert(sizeof(scree_contact_list) == offsetof(scree_contact_list, bodies) +
+                                                 sizeof contact_fields / sizeof contact_fields[0] * sizeof(void *),
+               "every array of the contacts has a field");
 
 const scree_field scree_frame_particle = {"particle", "1", "id of the particle", SCREE_FIELD_INT32, 1, 0};
 const scree_field scree_frame_group = {"group",           "1", "index of the particle group in the scene",

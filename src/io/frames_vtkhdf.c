@@ -115,10 +115,12 @@ static scree_status write_triangles(scree_frames *frames, const scree_simulation
             number_triangles(shape, frames->first_vertex[i], block + 3 * num);
             num += shape->num_triangles;
         }
-        status = scree_vtkhdf_write(file, SCREE_VTKHDF_CONNECTIVITY, id_row + 3 * done, 3 * num, block, report);
+        status = scree_vtkhdf_write(file, SCREE_VTKHDF_CONNECTIVITY, (scree_vtkhdf_rows){id_row + 3 * done, 3 * num},
+                                    block, report);
         for (int64_t t = 0; t <= num; ++t) block[t] = (int32_t)(3 * (done + t));
         if (status == SCREE_OK)
-            status = scree_vtkhdf_write(file, SCREE_VTKHDF_OFFSETS, offset_row + done, num + 1, block, report);
+            status = scree_vtkhdf_write(file, SCREE_VTKHDF_OFFSETS, (scree_vtkhdf_rows){offset_row + done, num + 1},
+                                        block, report);
         done += num;
     }
     *num_triangles = done;
@@ -138,7 +140,7 @@ static scree_status write_labels(scree_frames *frames, const scree_simulation *s
         for (int64_t i = first; i < last; ++i)
             for (int64_t v = frames->first_vertex[i]; v < frames->first_vertex[i + 1]; ++v)
                 block[v - row] = column == PARTICLE_ID ? (int32_t)i : simulation->particles.group[i];
-        status = scree_vtkhdf_write(frames->particles, column, row, num, block, report);
+        status = scree_vtkhdf_write(frames->particles, column, (scree_vtkhdf_rows){row, num}, block, report);
     }
     return status;
 }
@@ -179,12 +181,14 @@ static scree_status write_particles(scree_frames *frames, const scree_simulation
         for (int64_t i = first; i < last; ++i)
             place_points(particle_shape(simulation, i), particle_pose(particles, i),
                          block + 3 * (first_vertex[i] - row));
-        status = scree_vtkhdf_write(file, SCREE_VTKHDF_POINT_COORDINATES, step->point_offset + row, num, block, report);
+        status = scree_vtkhdf_write(file, SCREE_VTKHDF_POINT_COORDINATES,
+                                    (scree_vtkhdf_rows){step->point_offset + row, num}, block, report);
         for (int64_t i = first; i < last; ++i)
             for (int64_t v = first_vertex[i]; v < first_vertex[i + 1]; ++v)
                 block[v - row] = (float)scree_vec3_length(particles->velocity[i]);
         if (status == SCREE_OK)
-            status = scree_vtkhdf_write(file, PARTICLE_SPEED, step->point_offset + row, num, block, report);
+            status = scree_vtkhdf_write(file, PARTICLE_SPEED, (scree_vtkhdf_rows){step->point_offset + row, num}, block,
+                                        report);
     }
     if (status == SCREE_OK) status = scree_vtkhdf_add_step(file, step, report);
     if (status == SCREE_OK && !is_first) scree_vtkhdf_add_points(file, first_vertex[particles->num_particles]);
@@ -223,17 +227,20 @@ static scree_status write_wall(scree_frames *frames, const scree_simulation *sim
                                scree_vtkhdf_num_rows(file, SCREE_VTKHDF_PARTS) + num[SCREE_VTKHDF_CELLS];
     float *points = frames->block;
     place_points(shape, simulation->walls[w].pose, points);
-    scree_status status =
-        scree_vtkhdf_write(file, SCREE_VTKHDF_POINT_COORDINATES, point_row, shape->num_vertices, points, report);
+    scree_status status = scree_vtkhdf_write(file, SCREE_VTKHDF_POINT_COORDINATES,
+                                             (scree_vtkhdf_rows){point_row, shape->num_vertices}, points, report);
     int32_t *ids = frames->block;
     for (int32_t v = 0; v < shape->num_vertices; ++v) ids[v] = w;
-    if (status == SCREE_OK) status = scree_vtkhdf_write(file, WALL_ID, point_row, shape->num_vertices, ids, report);
+    if (status == SCREE_OK)
+        status = scree_vtkhdf_write(file, WALL_ID, (scree_vtkhdf_rows){point_row, shape->num_vertices}, ids, report);
     number_triangles(shape, num[SCREE_VTKHDF_POINTS], ids);
     if (status == SCREE_OK)
-        status = scree_vtkhdf_write(file, SCREE_VTKHDF_CONNECTIVITY, id_row, 3 * num_triangles, ids, report);
+        status = scree_vtkhdf_write(file, SCREE_VTKHDF_CONNECTIVITY, (scree_vtkhdf_rows){id_row, 3 * num_triangles},
+                                    ids, report);
     for (int64_t t = 0; t <= num_triangles; ++t) ids[t] = (int32_t)(num[SCREE_VTKHDF_IDS] + 3 * t);
     if (status == SCREE_OK)
-        status = scree_vtkhdf_write(file, SCREE_VTKHDF_OFFSETS, offset_row, num_triangles + 1, ids, report);
+        status = scree_vtkhdf_write(file, SCREE_VTKHDF_OFFSETS, (scree_vtkhdf_rows){offset_row, num_triangles + 1}, ids,
+                                    report);
     num[SCREE_VTKHDF_POINTS] += shape->num_vertices;
     num[SCREE_VTKHDF_CELLS] += num_triangles;
     num[SCREE_VTKHDF_IDS] += 3 * num_triangles;
@@ -304,15 +311,18 @@ static scree_status write_contact_lines(scree_frames *frames, const scree_simula
             points[3 * num_points + 2] = (float)line.points[k].z;
         }
     }
-    scree_status status =
-        scree_vtkhdf_write(file, SCREE_VTKHDF_POINT_COORDINATES, point_row, num_points, points, report);
+    scree_status status = scree_vtkhdf_write(file, SCREE_VTKHDF_POINT_COORDINATES,
+                                             (scree_vtkhdf_rows){point_row, num_points}, points, report);
     int32_t *ids = frames->block;
     for (int64_t k = 0; k < num_points; ++k) ids[k] = (int32_t)(first_point + k);
     if (status == SCREE_OK)
-        status = scree_vtkhdf_write(file, SCREE_VTKHDF_CONNECTIVITY, id_row, num_points, ids, report);
+        status =
+            scree_vtkhdf_write(file, SCREE_VTKHDF_CONNECTIVITY, (scree_vtkhdf_rows){id_row, num_points}, ids, report);
     ids[0] = (int32_t)first_point;
     for (int64_t c = 0; c < count; ++c) ids[c + 1] = ids[c] + make_contact_line(simulation, first + c).num_points;
-    if (status == SCREE_OK) status = scree_vtkhdf_write(file, SCREE_VTKHDF_OFFSETS, offset_row, count + 1, ids, report);
+    if (status == SCREE_OK)
+        status =
+            scree_vtkhdf_write(file, SCREE_VTKHDF_OFFSETS, (scree_vtkhdf_rows){offset_row, count + 1}, ids, report);
     num[SCREE_VTKHDF_CELLS] += count;
     num[SCREE_VTKHDF_POINTS] += num_points;
     num[SCREE_VTKHDF_IDS] += num_points;
@@ -364,7 +374,8 @@ static scree_status write_contacts(scree_frames *frames, const scree_simulation 
         for (int column = CONTACT_I; column <= CONTACT_SLIPPING && status == SCREE_OK; ++column)
         {
             fill_contact_column(&simulation->contacts, column, first, first + count, frames->block);
-            status = scree_vtkhdf_write(file, column, cell_row + first, count, frames->block, report);
+            status =
+                scree_vtkhdf_write(file, column, (scree_vtkhdf_rows){cell_row + first, count}, frames->block, report);
         }
     }
     scree_vtkhdf_step step = {0, SCREE_VTKHDF_EMPTY_PART, 0, 0, 0};
@@ -448,14 +459,25 @@ static void define(const scree_frames *frames, const scree_simulation *simulatio
     defs[2] = contacts;
 }
 
-static scree_status open_file(scree_vtkhdf_file **file, const char *folder, const char *name,
-                              const scree_vtkhdf_def *def, double last_time, scree_report *report)
+/// Opens the files, going on with what they hold up to last_time if that is not negative.
+static scree_status open_all(scree_frames *frames, const char *folder, const scree_simulation *simulation,
+                             double last_time, scree_report *report)
 {
-    char *path = scree_path_join(folder, name);
-    if (path == NULL) return SCREE_OUT_OF_MEMORY;
-    const scree_status status = last_time >= 0 ? scree_vtkhdf_reopen(file, path, def, last_time, report)
-                                               : scree_vtkhdf_create(file, path, def, report);
-    free(path);
+    static const char *const names[3] = {"frames.vtkhdf", "walls.vtkhdf", "contacts.vtkhdf"};
+    scree_vtkhdf_file **const files[3] = {&frames->particles, &frames->walls, &frames->contacts};
+    scree_vtkhdf_def defs[3];
+    int64_t num_triangles;
+    scree_status status = measure(frames, simulation, &num_triangles, report);
+    if (status == SCREE_OK) define(frames, simulation, num_triangles, defs);
+    for (int k = 0; k < 3 && status == SCREE_OK; ++k)
+    {
+        if (k == 1 && simulation->num_walls == 0) continue;
+        char *path = scree_path_join(folder, names[k]);
+        if (path == NULL) status = SCREE_OUT_OF_MEMORY;
+        else if (last_time >= 0) status = scree_vtkhdf_reopen(files[k], path, defs + k, last_time, report);
+        else status = scree_vtkhdf_create(files[k], path, defs + k, report);
+        free(path);
+    }
     return status;
 }
 
@@ -465,15 +487,8 @@ scree_status scree_frames_open(scree_frames **frames, const char *folder, const 
     *frames = NULL;
     scree_frames *f = calloc(1, sizeof *f);
     if (f == NULL) return SCREE_OUT_OF_MEMORY;
-    const double last_time = is_restart ? scree_simulation_time(simulation) : -1;
-    scree_vtkhdf_def defs[3];
-    int64_t num_triangles;
-    scree_status status = measure(f, simulation, &num_triangles, report);
-    if (status == SCREE_OK) define(f, simulation, num_triangles, defs);
-    if (status == SCREE_OK) status = open_file(&f->particles, folder, "frames.vtkhdf", defs + 0, last_time, report);
-    if (status == SCREE_OK && simulation->num_walls > 0)
-        status = open_file(&f->walls, folder, "walls.vtkhdf", defs + 1, last_time, report);
-    if (status == SCREE_OK) status = open_file(&f->contacts, folder, "contacts.vtkhdf", defs + 2, last_time, report);
+    const scree_status status =
+        open_all(f, folder, simulation, is_restart ? scree_simulation_time(simulation) : -1, report);
     if (status != SCREE_OK)
     {
         scree_frames_close(f, NULL);

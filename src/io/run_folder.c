@@ -183,8 +183,8 @@ static scree_status write_scene(const scree_run_folder *folder, const scree_scen
     return status;
 }
 
-static scree_status open_files(scree_run_folder *folder, const scree_scene_file *file,
-                               const scree_simulation *simulation, bool replace, scree_report *report)
+static scree_status open_files(scree_run_folder *folder, const scree_run_folder_def *def,
+                               const scree_simulation *simulation, scree_report *report)
 {
     char *series_path = scree_path_join(folder->path, "series.csv");
     if (series_path == NULL) return SCREE_OUT_OF_MEMORY;
@@ -192,27 +192,28 @@ static scree_status open_files(scree_run_folder *folder, const scree_scene_file 
         scree_series_open(&folder->series, series_path, folder->is_restart ? simulation->step : -1, report);
     free(series_path);
     // the series is locked now, so nobody else writes what is removed here
-    if (status == SCREE_OK && replace) status = remove_files(folder->path, report);
-    if (status == SCREE_OK) status = write_scene(folder, file, report);
+    if (status == SCREE_OK && !folder->is_restart) status = remove_files(folder->path, report);
+    if (status == SCREE_OK) status = write_scene(folder, def->file, report);
     return status;
 }
 
-scree_status scree_run_folder_open(scree_run_folder **folder, const char *path, const scree_scene_file *file,
-                                   const scree_simulation *simulation, bool replace, bool restart, scree_report *report)
+scree_status scree_run_folder_open(scree_run_folder **folder, const scree_run_folder_def *def,
+                                   const scree_simulation *simulation, scree_report *report)
 {
     *folder = NULL;
+    const char *path = def->path;
     scree_status status = make_folders(path, report);
-    if (status == SCREE_OK && !replace && !restart) status = refuse_old_run(path, report);
+    if (status == SCREE_OK && !def->replace && !def->restart) status = refuse_old_run(path, report);
     if (status != SCREE_OK) return status;
     scree_run_folder *f = calloc(1, sizeof *f);
     if (f == NULL) return SCREE_OUT_OF_MEMORY;
-    f->is_restart = restart;
+    f->is_restart = def->restart;
     f->path = scree_path_join(path, "");
-    status = f->path == NULL ? SCREE_OUT_OF_MEMORY : open_files(f, file, simulation, replace && !restart, report);
+    status = f->path == NULL ? SCREE_OUT_OF_MEMORY : open_files(f, def, simulation, report);
     // on a restart old frames are shortened now, not when the first new one is due
     const bool has_frames =
         holds_file(path, "frames.vtkhdf") || holds_file(path, "walls.vtkhdf") || holds_file(path, "contacts.vtkhdf");
-    if (status == SCREE_OK && restart && has_frames)
+    if (status == SCREE_OK && f->is_restart && has_frames)
         status = scree_frames_open(&f->frames, path, simulation, true, report);
     if (status == SCREE_OK) *folder = f;
     else scree_run_folder_close(f, NULL);

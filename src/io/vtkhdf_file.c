@@ -428,14 +428,14 @@ static scree_status grow(scree_vtkhdf_file *file, scree_vtkhdf_extent extent, in
 
 // ---- steps
 
-scree_status scree_vtkhdf_write(scree_vtkhdf_file *file, int column, int64_t first, int64_t num, const void *data,
+scree_status scree_vtkhdf_write(scree_vtkhdf_file *file, int column, scree_vtkhdf_rows rows, const void *data,
                                 scree_report *report)
 {
     const scree_hdf5_printing printing = scree_hdf5_silence();
     scree_status status = SCREE_OK;
-    if (first + num > column_capacity(file, column))
-        status = grow(file, file->columns[column].def.extent, first + num, report);
-    if (status == SCREE_OK && !write_rows(file, column, first, num, data))
+    if (rows.first + rows.num > column_capacity(file, column))
+        status = grow(file, file->columns[column].def.extent, rows.first + rows.num, report);
+    if (status == SCREE_OK && !write_rows(file, column, rows.first, rows.num, data))
     {
         scree_hdf5_fault(report, file->path, "written");
         status = SCREE_WRITE_FAILED;
@@ -455,7 +455,7 @@ scree_status scree_vtkhdf_add_part(scree_vtkhdf_file *file, const int64_t num[SC
     static const scree_vtkhdf_extent extents[3] = {SCREE_VTKHDF_POINTS, SCREE_VTKHDF_CELLS, SCREE_VTKHDF_IDS};
     scree_status status = SCREE_OK;
     for (int k = 0; k < 3 && status == SCREE_OK; ++k)
-        status = scree_vtkhdf_write(file, columns[k], step->part, 1, num + extents[k], report);
+        status = scree_vtkhdf_write(file, columns[k], (scree_vtkhdf_rows){step->part, 1}, num + extents[k], report);
     if (status != SCREE_OK) return status;
     ++file->num_used[SCREE_VTKHDF_PARTS];
     for (int k = 0; k < 3; ++k) file->num_used[extents[k]] += num[extents[k]];

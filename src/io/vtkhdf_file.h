@@ -94,8 +94,14 @@ int64_t scree_vtkhdf_num_rows(const scree_vtkhdf_file *file, scree_vtkhdf_extent
 /// The last step; only if there is one.
 scree_vtkhdf_step scree_vtkhdf_last_step(const scree_vtkhdf_file *file);
 
-/// Rows first .. first + num - 1 of a column, growing the file if they do not fit.
-scree_status scree_vtkhdf_write(scree_vtkhdf_file *file, int column, int64_t first, int64_t num, const void *data,
+/// Rows first .. first + num - 1.
+typedef struct scree_vtkhdf_rows
+{
+    int64_t first, num;
+} scree_vtkhdf_rows;
+
+/// Writes rows of a column, growing the file if they do not fit. SCREE_OUT_OF_MEMORY, SCREE_WRITE_FAILED.
+scree_status scree_vtkhdf_write(scree_vtkhdf_file *file, int column, scree_vtkhdf_rows rows, const void *data,
                                 scree_report *report);
 /// Counts of a new part whose points, cells and ids have been written behind the rows in use. The step that is
 /// returned shows it. SCREE_WRITE_FAILED.

@@ -42,6 +42,7 @@ function(scree_add_test_programs kind library)
         get_filename_component(name ${source} NAME_WE)
         add_executable(${name} ${source})
         target_include_directories(${name} PRIVATE src tests)
+        target_compile_definitions(${name} PRIVATE _XOPEN_SOURCE=700) # M_PI, POSIX
         if(TARGET scree_test_support AND library STREQUAL "scree")
             target_link_libraries(${name} PRIVATE scree_test_support)
         endif()

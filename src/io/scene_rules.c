@@ -1,0 +1,339 @@
+/// \file scene_rules.c
+/// What the tables of keys cannot say: names that must exist and be there once, pairs of materials that can meet and
+/// need a law, keys that belong together or exclude each other. Values that were refused before are not looked at.
+#include "io/scene_rules.h"
+#include "io/nearest_name.h"
+
+#include "forces/force_model.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+bool scree_rules_number(const scree_yaml_node *section, const char *key, double *number)
+{
+    const scree_yaml_node *node = scree_yaml_find(section, key);
+    if (node == NULL || node->is_refused || node->kind != SCREE_YAML_SCALAR) return false;
+    *number = node->number;
+    return true;
+}
+
+bool scree_rules_numbers(const scree_yaml_node *section, const char *key, double *numbers, int num)
+{
+    const scree_yaml_node *node = scree_yaml_find(section, key);
+    if (node == NULL || node->is_refused || node->kind != SCREE_YAML_LIST || node->num_items != num) return false;
+    for (int k = 0; k < num; ++k) numbers[k] = node->items[k]->number;
+    return true;
+}
+
+const char *scree_rules_text(const scree_yaml_node *section, const char *key)
+{
+    const scree_yaml_node *node = scree_yaml_find(section, key);
+    return node == NULL || node->is_refused || node->kind != SCREE_YAML_SCALAR ? NULL : node->text;
+}
+
+bool scree_rules_is_given(const scree_yaml_node *section, const char *key)
+{
+    const scree_yaml_node *node = scree_yaml_find(section, key);
+    return node != NULL && !node->is_default;
+}
+
+const scree_yaml_node *scree_rules_place(const scree_yaml_node *section, const char *key)
+{
+    const scree_yaml_node *node = scree_yaml_find(section, key);
+    return node == NULL || node->is_default ? section : node;
+}
+
+int64_t scree_rules_num_items(const scree_yaml_node *list)
+{
+    return list == NULL || list->is_refused || list->kind != SCREE_YAML_LIST ? 0 : list->num_items;
+}
+
+// -------------------------------------------------------------------------------------------------------------- names
+
+static int compare_names(const void *a, const void *b)
+{
+    const scree_rules_name *x = a, *y = b;
+    const int order = strcmp(x->name, y->name);
+    return order != 0 ? order : (x->index > y->index) - (x->index < y->index);
+}
+
+scree_rules_names scree_rules_collect(scree_scene_reader *reader, const char *list_name)
+{
+    scree_rules_names names = {.list_name = list_name};
+    const scree_yaml_node *list = scree_yaml_find(reader->root, list_name);
+    const int64_t num = scree_rules_num_items(list);
+    names.names = scree_yaml_allocate(&reader->tree, ((size_t)num + 1) * sizeof *names.names);
+    if (names.names == NULL)
+    {
+        reader->is_exhausted = true;
+        return names;
+    }
+    for (int64_t k = 0; k < num; ++k)
+    {
+        const char *name = scree_rules_text(list->items[k], "name");
+        if (name == NULL) names.is_incomplete = true;
+        else names.names[names.num++] = (scree_rules_name){name, k, false};
+    }
+    qsort(names.names, (size_t)names.num, sizeof *names.names, compare_names);
+    for (int64_t k = 1; k < names.num; ++k)
+    {
+        const scree_rules_name *first = names.names + k - 1, *second = names.names + k;
+        if (strcmp(first->name, second->name) != 0) continue;
+        scree_scene_fault(reader, scree_yaml_find(list->items[second->index], "name"),
+                          "name of %s.%lld is \"%.255s\", which %s.%lld is called already; choose another one",
+                          list_name, (long long)second->index, second->name, list_name, (long long)first->index);
+    }
+    return names;
+}
+
+int64_t scree_rules_find(scree_rules_names *names, const char *name)
+{
+    int64_t low = 0, high = names->num;
+    while (low < high)
+    {
+        const int64_t middle = (low + high) / 2;
+        if (strcmp(names->names[middle].name, name) < 0) low = middle + 1;
+        else high = middle;
+    }
+    if (low == names->num || strcmp(names->names[low].name, name) != 0) return -1;
+    names->names[low].is_used = true;
+    return names->names[low].index;
+}
+
+int64_t scree_rules_resolve(scree_scene_reader *reader, scree_rules_names *names, const scree_yaml_node *at,
+                            const char *label)
+{
+    if (at == NULL || at->is_refused || at->kind != SCREE_YAML_SCALAR) return -1;
+    const int64_t index = scree_rules_find(names, at->text);
+    if (index >= 0) return index;
+    // an item whose own name was refused may be the one that is meant
+    if (names->is_incomplete) return -1;
+
+    const char *nearest = NULL;
+    for (int64_t k = 0; k < names->num && nearest == NULL; ++k)
+        if (scree_name_is_near(at->text, names->names[k].name)) nearest = names->names[k].name;
+    if (nearest != NULL)
+        scree_scene_fault(reader, at, "%s is \"%.255s\", which is not among the %s; did you mean \"%.255s\"?", label,
+                          at->text, names->list_name, nearest);
+    else if (names->num == 0)
+        scree_scene_fault(reader, at, "%s is \"%.255s\", but there are no %s; add one of this name", label, at->text,
+                          names->list_name);
+    else
+        scree_scene_fault(reader, at,
+                          "%s is \"%.255s\", which is not among the %s; add it, or take one like \"%.255s\"", label,
+                          at->text, names->list_name, names->names[0].name);
+    return -1;
+}
+
+void scree_rules_warn_unused(scree_scene_reader *reader, const scree_rules_names *names)
+{
+    const scree_yaml_node *list = scree_yaml_find(reader->root, names->list_name);
+    for (int64_t k = 0; k < names->num; ++k)
+        if (!names->names[k].is_used)
+            scree_scene_warn(reader, list->items[names->names[k].index], "%s.%lld, \"%.255s\", is not used",
+                             names->list_name, (long long)names->names[k].index, names->names[k].name);
+}
+
+// ------------------------------------------------------------------------------------------------------- contact laws
+
+/// Damping by one of two keys, a model that exists, a switch that is 0 or 1.
+static void check_law(scree_scene_reader *reader, const scree_yaml_node *law, int64_t index)
+{
+    double restitution, damping, spring;
+    if (scree_rules_number(law, "restitution_coefficient", &restitution) &&
+        scree_rules_number(law, "damping_ratio", &damping) && isnan(restitution) == isnan(damping))
+        scree_scene_fault(reader, law,
+                          isnan(damping)
+                              ? "contact_laws.%lld has neither restitution_coefficient nor damping_ratio; give one of "
+                                "them, damping_ratio: 0 for no damping"
+                              : "contact_laws.%lld has both restitution_coefficient and damping_ratio; remove one",
+                          (long long)index);
+    if (scree_rules_number(law, "tangential_spring", &spring) && spring != 0 && spring != 1)
+        scree_scene_fault(reader, scree_rules_place(law, "tangential_spring"),
+                          "tangential_spring of contact_laws.%lld is %g; it must be 0 or 1", (long long)index, spring);
+
+    const char *model = scree_rules_text(law, "model");
+    int32_t num_models = 0;
+    const scree_force_model *models = scree_force_models(&num_models);
+    bool is_known = model == NULL;
+    for (int32_t k = 0; k < num_models; ++k) is_known |= model != NULL && strcmp(model, models[k].name) == 0;
+    if (!is_known)
+        scree_scene_fault(reader, scree_rules_place(law, "model"),
+                          "model of contact_laws.%lld is \"%.255s\", which is not a force model; known is \"%s\"",
+                          (long long)index, model, models[0].name);
+}
+
+/// Pairs of materials as a square of flags.
+typedef struct material_pairs
+{
+    int64_t *law_of; ///< (num, num) 1 + number of the law; 0: none
+    int64_t num;
+    bool is_incomplete; ///< a law or a material was refused, so a missing pair may not be missing
+} material_pairs;
+
+static void check_laws(scree_scene_reader *reader, scree_rules_names *materials, material_pairs *pairs)
+{
+    const scree_yaml_node *laws = scree_yaml_find(reader->root, "contact_laws");
+    pairs->is_incomplete |= laws == NULL || laws->is_refused || materials->is_incomplete;
+    for (int64_t k = 0; k < scree_rules_num_items(laws); ++k)
+    {
+        const scree_yaml_node *law = laws->items[k], *both = scree_yaml_find(law, "materials");
+        check_law(reader, law, k);
+        int64_t index[2] = {-1, -1};
+        const bool has_names = both != NULL && both->kind == SCREE_YAML_LIST && both->num_items == 2;
+        for (int m = 0; has_names && m < 2; ++m)
+        {
+            char label[80];
+            snprintf(label, sizeof label, "materials.%d of contact_laws.%lld", m, (long long)k);
+            index[m] = scree_rules_resolve(reader, materials, both->items[m], label);
+        }
+        if (index[0] < 0 || index[1] < 0)
+        {
+            pairs->is_incomplete = true;
+            continue;
+        }
+        int64_t *first = pairs->law_of + index[0] * pairs->num + index[1];
+        if (*first > 0)
+            scree_scene_fault(reader, law,
+                              "contact_laws.%lld is for \"%.255s\" and \"%.255s\", and so is contact_laws.%lld; remove "
+                              "one",
+                              (long long)k, both->items[0]->text, both->items[1]->text, (long long)*first - 1);
+        else *first = pairs->law_of[index[1] * pairs->num + index[0]] = k + 1;
+    }
+}
+
+/// A group of particles or a wall, as far as contacts go.
+typedef struct meeting_body
+{
+    int64_t material; ///< -1: not known
+    bool is_many;     ///< meets its like
+    const char *list;
+    int64_t index;
+} meeting_body;
+
+static void require_law(scree_scene_reader *reader, material_pairs *pairs, const meeting_body *a, const meeting_body *b)
+{
+    if (a->material < 0 || b->material < 0) return;
+    int64_t *law = pairs->law_of + a->material * pairs->num + b->material;
+    if (*law != 0) return;
+    const scree_yaml_node *materials = scree_yaml_find(reader->root, "materials");
+    const char *name_a = scree_rules_text(materials->items[a->material], "name");
+    const char *name_b = scree_rules_text(materials->items[b->material], "name");
+    scree_scene_fault(reader, scree_rules_place(reader->root, "contact_laws"),
+                      "contact_laws has none for \"%.255s\" and \"%.255s\", which can meet in %s.%lld and %s.%lld; add "
+                      "- {materials: [%.255s, %.255s], friction_coefficient: ..., restitution_coefficient: ...}",
+                      name_a, name_b, a->list, (long long)a->index, b->list, (long long)b->index, name_a, name_b);
+    *law = pairs->law_of[b->material * pairs->num + a->material] = -1; // told once
+}
+
+/// The first body of each material stands for all of them, so the work is that of the pairs of materials.
+static void check_meetings(scree_scene_reader *reader, material_pairs *pairs, const scree_rules_scene *scene)
+{
+    meeting_body *groups = scree_yaml_allocate(&reader->tree, ((size_t)pairs->num + 1) * sizeof *groups);
+    meeting_body *walls = scree_yaml_allocate(&reader->tree, ((size_t)pairs->num + 1) * sizeof *walls);
+    if (groups == NULL || walls == NULL)
+    {
+        reader->is_exhausted = true;
+        return;
+    }
+    for (int64_t m = 0; m < pairs->num; ++m) groups[m] = walls[m] = (meeting_body){.material = -1};
+    for (int64_t g = 0; g < scene->num_groups; ++g)
+    {
+        const int64_t m = scene->group_material[g];
+        if (m < 0) continue;
+        const bool is_second = groups[m].material >= 0;
+        const bool is_many = is_second || groups[m].is_many || scene->is_group_of_many[g];
+        if (!is_second) groups[m] = (meeting_body){m, is_many, "particles", g};
+        groups[m].is_many = is_many;
+    }
+    for (int64_t w = 0; w < scene->num_walls; ++w)
+    {
+        const int64_t m = scene->wall_material[w];
+        if (m >= 0 && walls[m].material < 0) walls[m] = (meeting_body){m, false, "walls", w};
+    }
+    for (int64_t a = 0; a < pairs->num; ++a)
+        for (int64_t b = 0; b < pairs->num && groups[a].material >= 0; ++b)
+        {
+            if (b > a || (b == a && groups[a].is_many)) require_law(reader, pairs, groups + a, groups + b);
+            require_law(reader, pairs, groups + a, walls + b);
+        }
+}
+
+// --------------------------------------------------------------------------------------------------------- whole scene
+
+static void check_time(scree_scene_reader *reader)
+{
+    const scree_yaml_node *time = scree_yaml_find(reader->root, "time");
+    double end, step;
+    if (!scree_rules_number(time, "end", &end) || !scree_rules_number(time, "step", &step)) return;
+    if (!isnan(step) && end / step > 1e15)
+        scree_scene_fault(reader, scree_rules_place(time, "step"),
+                          "time.end of %g s takes %g steps of %g s; at most 1e15 are possible", end, end / step, step);
+}
+
+/// Times of output that are left to scree.
+static void fill_output(scree_scene_reader *reader)
+{
+    static const struct
+    {
+        const char *key;
+        double share;
+    } intervals[] = {{"series", 1.0 / 200}, {"frames", 1.0 / 50}, {"checkpoint", 1.0 / 10}};
+    double end = 0;
+    if (!scree_rules_number(scree_yaml_find(reader->root, "time"), "end", &end)) return;
+    for (int k = 0; k < 3; ++k)
+    {
+        scree_yaml_node *node = scree_yaml_find(scree_yaml_find(reader->root, "output"), intervals[k].key);
+        if (node == NULL || node->is_refused || !isnan(node->number)) continue;
+        char *text = scree_yaml_allocate(&reader->tree, 32);
+        if (text == NULL) reader->is_exhausted = true;
+        else snprintf(text, 32, "%.17g", end * intervals[k].share);
+        node->number_text = text;
+    }
+}
+
+static void check_repose(scree_scene_reader *reader)
+{
+    const scree_yaml_node *repose = scree_yaml_find(reader->root, "repose");
+    const char *measure = scree_rules_text(repose, "measure");
+    double from, to;
+    if (measure == NULL || strcmp(measure, "true") != 0 || !scree_rules_number(repose, "from", &from) ||
+        !scree_rules_number(repose, "to", &to) || to > from)
+        return;
+    scree_scene_fault(reader, repose,
+                      "repose.measure is true, but the range of x from %g to %g is empty; set from < to", from, to);
+}
+
+void scree_scene_check_rules(scree_scene_reader *reader)
+{
+    if (reader->root->kind != SCREE_YAML_SECTION || reader->is_exhausted) return;
+    scree_rules_names materials = scree_rules_collect(reader, "materials");
+    scree_rules_names shapes = scree_rules_collect(reader, "shapes");
+    scree_rules_collect(reader, "particles");
+    scree_rules_collect(reader, "walls");
+    if (reader->is_exhausted) return;
+
+    material_pairs pairs = {.num = scree_rules_num_items(scree_yaml_find(reader->root, "materials"))};
+    pairs.law_of = calloc((size_t)(pairs.num * pairs.num) + 1, sizeof *pairs.law_of);
+    if (pairs.law_of == NULL)
+    {
+        reader->is_exhausted = true;
+        return;
+    }
+    scree_rules_scene scene = {.materials = &materials, .shapes = &shapes};
+    check_laws(reader, &materials, &pairs);
+    for (int64_t k = 0; k < materials.num; ++k) materials.names[k].is_used = false; // a law alone is no use
+    scree_rules_check_shapes(reader);
+    scree_rules_check_groups(reader, &scene);
+    scree_rules_check_walls(reader, &scene);
+    if (!reader->is_exhausted && !pairs.is_incomplete) check_meetings(reader, &pairs, &scene);
+    free(pairs.law_of);
+    check_time(reader);
+    fill_output(reader);
+    check_repose(reader);
+    if (reader->num_faults > 0 || reader->is_exhausted) return;
+    scree_rules_warn_unused(reader, &materials);
+    scree_rules_warn_unused(reader, &shapes);
+    if (scene.num_groups == 0) scree_scene_warn(reader, NULL, "there are no particles, so nothing will move");
+}

@@ -1,0 +1,584 @@
+/// \file scene_schema.c
+/// The tables of all keys of a scene.
+#include "io/scene_schema.h"
+
+#include <string.h>
+
+#define COUNT(array) ((int)(sizeof(array) / sizeof((array)[0])))
+#define FORCE (CYAML_FLAG_DEFAULT | CYAML_FLAG_STRICT)
+
+/// Largest magnitudes: beyond them a double loses what a simulation needs, or a value is a slip of the unit.
+#define MAX_POSITION 1e6
+#define MAX_VELOCITY 1e6
+#define MAX_TIME 1e9
+#define MAX_INTEGER 9007199254740992.0 // 2^53: every integer up to here is a double
+
+static const cyaml_schema_value_t number_value = {CYAML_VALUE_FLOAT(FORCE, double)};
+static const cyaml_schema_value_t name_value = {CYAML_VALUE_STRING(CYAML_FLAG_POINTER, char *, 1, CYAML_UNLIMITED)};
+
+#define NUMBER(type, member) CYAML_FIELD_FLOAT(#member, FORCE, type, member)
+#define INTEGER(type, member) CYAML_FIELD_INT(#member, FORCE, type, member)
+#define TRUTH(type, member) CYAML_FIELD_BOOL(#member, FORCE, type, member)
+#define TEXT(type, member) CYAML_FIELD_STRING_PTR(#member, CYAML_FLAG_POINTER, type, member, 0, CYAML_UNLIMITED)
+#define WORD(type, member, words) CYAML_FIELD_ENUM(#member, FORCE, type, member, words, CYAML_ARRAY_LEN(words))
+#define NUMBERS(type, member, count) \
+    CYAML_FIELD_SEQUENCE_FIXED(#member, CYAML_FLAG_DEFAULT, type, member, &number_value, count)
+#define SECTION(type, member, fields) CYAML_FIELD_MAPPING(#member, CYAML_FLAG_DEFAULT, type, member, fields)
+#define LIST(type, member, entry) \
+    CYAML_FIELD_SEQUENCE_COUNT(#member, CYAML_FLAG_POINTER, type, member, num_##member, entry, 0, CYAML_UNLIMITED)
+
+// --------------------------------------------------------------------------------------------------------------- time
+
+static const cyaml_schema_field_t time_fields[] = {NUMBER(scree_time_def, end), NUMBER(scree_time_def, step),
+                                                   NUMBER(scree_time_def, step_fraction), CYAML_FIELD_END};
+static const scree_scene_key time_keys[] = {
+    {.name = "end", .unit = "s", .min = 0, .max = MAX_TIME, .meaning = "simulated time; the run starts at 0"},
+    {.name = "step",
+     .unit = "s",
+     .default_text = "auto",
+     .special = "auto",
+     .min = 1e-15,
+     .max = 1e3,
+     .meaning = "time step; auto: step_fraction of the critical step of the stiffest contact to expect"},
+    {.name = "step_fraction",
+     .unit = "1",
+     .default_text = "0.15",
+     .min = 1e-4,
+     .max = 1,
+     .meaning = "share of the critical step sqrt(m_eff/k_eff) that auto takes"},
+};
+static const scree_scene_section time_section = {"time", "How long and in which steps.", time_fields, time_keys,
+                                                 COUNT(time_keys)};
+
+// ---------------------------------------------------------------------------------------------------------- materials
+
+static const cyaml_schema_field_t material_fields[] = {TEXT(scree_material_def, name),
+                                                       NUMBER(scree_material_def, density),
+                                                       NUMBER(scree_material_def, youngs_modulus),
+                                                       NUMBER(scree_material_def, poisson_ratio),
+                                                       NUMBER(scree_material_def, shear_modulus),
+                                                       CYAML_FIELD_END};
+static const scree_scene_key material_keys[] = {
+    {.name = "name", .rule = SCREE_TEXT_NAME, .meaning = "what particles, walls and contact laws call it"},
+    {.name = "density", .unit = "kg/m^3", .min = 1e-3, .max = 1e6, .meaning = "mass over volume of the solid"},
+    {.name = "youngs_modulus", .unit = "Pa", .min = 1, .max = 1e13, .meaning = "stiffness of the solid"},
+    {.name = "poisson_ratio", .unit = "1", .min = 0, .max = 0.5, .meaning = "lateral over axial strain"},
+    {.name = "shear_modulus",
+     .unit = "Pa",
+     .default_text = "auto",
+     .special = "auto",
+     .min = 1,
+     .max = 1e13,
+     .meaning = "stiffness in shear; auto: youngs_modulus / (2 (1 + poisson_ratio))"},
+};
+static const scree_scene_section material_section = {"materials[]", "Solids that particles and walls are made of.",
+                                                     material_fields, material_keys, COUNT(material_keys)};
+
+// ------------------------------------------------------------------------------------------------------- contact laws
+
+static const cyaml_strval_t shear_mixings[] = {{"mindlin", SCREE_SHEAR_MINDLIN}, {"bilock", SCREE_SHEAR_BILOCK}};
+static const cyaml_schema_field_t law_fields[] = {
+    CYAML_FIELD_SEQUENCE_FIXED("materials", CYAML_FLAG_DEFAULT, scree_contact_law_def, materials, &name_value, 2),
+    TEXT(scree_contact_law_def, model),
+    NUMBER(scree_contact_law_def, friction_coefficient),
+    NUMBER(scree_contact_law_def, restitution_coefficient),
+    NUMBER(scree_contact_law_def, damping_ratio),
+    NUMBER(scree_contact_law_def, stiffness_factor),
+    NUMBER(scree_contact_law_def, tangential_spring),
+    TRUTH(scree_contact_law_def, attraction),
+    WORD(scree_contact_law_def, shear_mixing, shear_mixings),
+    CYAML_FIELD_END};
+static const scree_scene_key law_keys[] = {
+    {.name = "materials", .rule = SCREE_TEXT_NAME, .meaning = "names of the two materials, in any order"},
+    {.name = "model",
+     .default_text = "volumetric_hertz_mindlin",
+     .rule = SCREE_TEXT_NAME,
+     .meaning = "force law, a name of the registry of force models"},
+    {.name = "friction_coefficient",
+     .unit = "1",
+     .min = 0,
+     .max = 10,
+     .meaning = "largest tangential over normal force; 0: no friction"},
+    {.name = "restitution_coefficient",
+     .unit = "1",
+     .default_text = "auto",
+     .special = "auto",
+     .min = 0.01,
+     .max = 1,
+     .meaning = "speed after over speed before a central impact of spheres; give this or damping_ratio. Without "
+                "attraction the fit behind it is good to 4e-4 from 0.2 to 0.9"},
+    {.name = "damping_ratio",
+     .unit = "1",
+     .default_text = "auto",
+     .special = "auto",
+     .min = 0,
+     .max = 10,
+     .meaning = "damping coefficient g of normal and tangential forces; auto: from restitution_coefficient"},
+    {.name = "stiffness_factor",
+     .unit = "1",
+     .default_text = "0.7522527780636751",
+     .min = 1e-3,
+     .max = 1e3,
+     .meaning = "factor of E* sqrt(V d) in the volumetric law; the default 4/(3 sqrt(pi)) reproduces Hertz for "
+                "spheres, Nassauer & Kuna (2013) report 0.62 for polyhedra"},
+    {.name = "tangential_spring",
+     .unit = "1",
+     .default_text = "1",
+     .min = 0,
+     .max = 1,
+     .meaning = "1: tangential spring with history, 0: tangential damping alone"},
+    {.name = "attraction",
+     .default_text = "false",
+     .meaning = "whether the total normal force may turn attractive when bodies separate"},
+    {.name = "shear_mixing",
+     .default_text = "mindlin",
+     .meaning = "1/G* of the pair: mindlin (2 - nu)/G summed over both, or bilock (1 - nu^2)/G, eq. 4.11 of Bilock "
+                "(2020)"},
+};
+static const scree_scene_section law_section = {
+    "contact_laws[]", "Forces between two materials; every pair of materials that can meet needs one.", law_fields,
+    law_keys, COUNT(law_keys)};
+
+// ------------------------------------------------------------------------------------------------------------- shapes
+
+static const cyaml_strval_t shape_sources[] = {{"file", SCREE_SHAPE_FILE},
+                                               {"box", SCREE_SHAPE_BOX},
+                                               {"tetrahedron", SCREE_SHAPE_TETRAHEDRON},
+                                               {"schoenhardt", SCREE_SHAPE_SCHOENHARDT},
+                                               {"sphere", SCREE_SHAPE_SPHERE},
+                                               {"rock", SCREE_SHAPE_ROCK}};
+static const cyaml_schema_field_t shape_fields[] = {TEXT(scree_shape_def, name),
+                                                    WORD(scree_shape_def, source, shape_sources),
+                                                    TEXT(scree_shape_def, file),
+                                                    NUMBERS(scree_shape_def, size, 3),
+                                                    INTEGER(scree_shape_def, triangles),
+                                                    INTEGER(scree_shape_def, seed),
+                                                    CYAML_FIELD_END};
+static const scree_scene_key shape_keys[] = {
+    {.name = "name", .rule = SCREE_TEXT_NAME, .meaning = "what particles and walls call it"},
+    {.name = "source", .meaning = "where the mesh comes from: a file, or made by rule"},
+    {.name = "file",
+     .default_text = "\"\"",
+     .rule = SCREE_TEXT_PATH,
+     .meaning = "mesh file of source file, relative to the folder of the scene"},
+    {.name = "size",
+     .unit = "m",
+     .default_text = "[1, 1, 1]",
+     .min = 0,
+     .max = MAX_POSITION,
+     .meaning = "edge lengths of a box; of the other shapes made by rule the first number is the diameter of the "
+                "sphere around a tetrahedron or schoenhardt, the diameter of a sphere, the middle extent of a rock, "
+                "and the others are not used. One number x stands for [x, x, x]"},
+    {.name = "triangles",
+     .unit = "1",
+     .default_text = "0",
+     .min = 0,
+     .max = 1e6,
+     .meaning = "wanted number of triangles of a sphere or a rock, at least 4; a file with more is simplified to it; "
+                "0: the file as it is"},
+    {.name = "seed",
+     .unit = "1",
+     .default_text = "0",
+     .min = 0,
+     .max = MAX_INTEGER,
+     .meaning = "of a rock: another number, another rock"},
+};
+static const scree_scene_section shape_section = {
+    "shapes[]", "Closed triangle meshes, shared by all particles and walls that name them.", shape_fields, shape_keys,
+    COUNT(shape_keys)};
+
+// ---------------------------------------------------------------------------------------------------------- particles
+
+static const cyaml_strval_t size_distributions[] = {{"as_shape", SCREE_SIZE_AS_SHAPE},
+                                                    {"fixed", SCREE_SIZE_FIXED},
+                                                    {"uniform", SCREE_SIZE_UNIFORM},
+                                                    {"normal", SCREE_SIZE_NORMAL}};
+static const cyaml_schema_field_t size_fields[] = {WORD(scree_size_def, distribution, size_distributions),
+                                                   NUMBER(scree_size_def, mean),
+                                                   NUMBER(scree_size_def, deviation),
+                                                   NUMBER(scree_size_def, min),
+                                                   NUMBER(scree_size_def, max),
+                                                   CYAML_FIELD_END};
+static const scree_scene_key size_keys[] = {
+    {.name = "distribution",
+     .default_text = "as_shape",
+     .meaning = "as_shape: all as large as the shape; fixed: all of size mean; uniform: between min and max; normal: "
+                "mean and deviation, drawn again outside min to max"},
+    {.name = "mean",
+     .unit = "m",
+     .default_text = "0",
+     .min = 0,
+     .max = MAX_POSITION,
+     .meaning = "size of fixed, mean of normal"},
+    {.name = "deviation",
+     .unit = "m",
+     .default_text = "0",
+     .min = 0,
+     .max = MAX_POSITION,
+     .meaning = "standard deviation of normal before it is truncated"},
+    {.name = "min",
+     .unit = "m",
+     .default_text = "0",
+     .min = 0,
+     .max = MAX_POSITION,
+     .meaning = "smallest size of uniform and normal"},
+    {.name = "max",
+     .unit = "m",
+     .default_text = "0",
+     .min = 0,
+     .max = MAX_POSITION,
+     .meaning = "largest size of uniform and normal"},
+};
+static const scree_scene_section size_section = {
+    "particles[].size",
+    "Sizes of the particles of a group: the middle one of the three extents of a particle's box in its own axes.",
+    size_fields, size_keys, COUNT(size_keys)};
+
+static const cyaml_schema_field_t region_fields[] = {
+    {.key = "min",
+     .data_offset = 0,
+     .value = {CYAML_VALUE_SEQUENCE_FIXED(CYAML_FLAG_DEFAULT, double, &number_value, 3)}},
+    {.key = "max",
+     .data_offset = 3 * sizeof(double),
+     .value = {CYAML_VALUE_SEQUENCE_FIXED(CYAML_FLAG_DEFAULT, double, &number_value, 3)}},
+    CYAML_FIELD_END};
+static const scree_scene_key region_keys[] = {
+    {.name = "min",
+     .unit = "m",
+     .default_text = "[0, 0, 0]",
+     .min = -MAX_POSITION,
+     .max = MAX_POSITION,
+     .meaning = "lower corner"},
+    {.name = "max",
+     .unit = "m",
+     .default_text = "[0, 0, 0]",
+     .min = -MAX_POSITION,
+     .max = MAX_POSITION,
+     .meaning = "upper corner"},
+};
+static const scree_scene_section region_section = {
+    "particles[].region", "Box that a group of particles is filled into, on a lattice from the bottom up.",
+    region_fields, region_keys, COUNT(region_keys)};
+
+static const cyaml_schema_field_t body_fields[] = {
+    NUMBERS(scree_body_def, position, 3), NUMBERS(scree_body_def, orientation, 4),      NUMBER(scree_body_def, size),
+    NUMBERS(scree_body_def, velocity, 3), NUMBERS(scree_body_def, angular_velocity, 3), CYAML_FIELD_END};
+static const scree_scene_key body_keys[] = {
+    {.name = "position", .unit = "m", .min = -MAX_POSITION, .max = MAX_POSITION, .meaning = "of the centre of mass"},
+    {.name = "orientation",
+     .unit = "1",
+     .default_text = "[1, 0, 0, 0]",
+     .min = -1e3,
+     .max = 1e3,
+     .meaning = "quaternion (w, x, y, z) that turns the shape as its source gives it; brought to length 1"},
+    {.name = "size",
+     .unit = "m",
+     .default_text = "auto",
+     .special = "auto",
+     .min = 1e-9,
+     .max = MAX_POSITION,
+     .meaning = "middle extent; auto: by the size section of the group"},
+    {.name = "velocity",
+     .unit = "m/s",
+     .default_text = "[0, 0, 0]",
+     .min = -MAX_VELOCITY,
+     .max = MAX_VELOCITY,
+     .meaning = "at the start"},
+    {.name = "angular_velocity",
+     .unit = "rad/s",
+     .default_text = "[0, 0, 0]",
+     .min = -1e7,
+     .max = 1e7,
+     .meaning = "at the start, along the axes of the world"},
+};
+static const scree_scene_section body_section = {"particles[].bodies[]", "Particles placed one by one.", body_fields,
+                                                 body_keys, COUNT(body_keys)};
+static const cyaml_schema_value_t body_value = {CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, scree_body_def, body_fields)};
+
+static const cyaml_schema_field_t group_fields[] = {TEXT(scree_particle_group_def, name),
+                                                    TEXT(scree_particle_group_def, shape),
+                                                    TEXT(scree_particle_group_def, material),
+                                                    SECTION(scree_particle_group_def, size, size_fields),
+                                                    INTEGER(scree_particle_group_def, count),
+                                                    NUMBER(scree_particle_group_def, mass),
+                                                    SECTION(scree_particle_group_def, region, region_fields),
+                                                    NUMBER(scree_particle_group_def, spacing),
+                                                    INTEGER(scree_particle_group_def, seed),
+                                                    NUMBERS(scree_particle_group_def, velocity, 3),
+                                                    LIST(scree_particle_group_def, bodies, &body_value),
+                                                    CYAML_FIELD_END};
+static const scree_scene_key group_keys[] = {
+    {.name = "name", .rule = SCREE_TEXT_NAME, .meaning = "for messages and --set"},
+    {.name = "shape", .rule = SCREE_TEXT_NAME, .meaning = "name of a shape"},
+    {.name = "material", .rule = SCREE_TEXT_NAME, .meaning = "name of a material"},
+    {.name = "size", .default_text = "{}", .section = &size_section, .meaning = "distribution of sizes"},
+    {.name = "count",
+     .unit = "1",
+     .default_text = "0",
+     .min = 0,
+     .max = 1e9,
+     .meaning = "number of particles to fill in; give this, mass or bodies"},
+    {.name = "mass",
+     .unit = "kg",
+     .default_text = "0",
+     .min = 0,
+     .max = 1e15,
+     .meaning = "total mass to fill in: particles are added until it is reached"},
+    {.name = "region", .default_text = "{}", .section = &region_section, .meaning = "box to fill"},
+    {.name = "spacing",
+     .unit = "1",
+     .default_text = "1.05",
+     .min = 1,
+     .max = 1e3,
+     .meaning = "lattice distance over the largest bounding diameter; the room that is left is used for jitter"},
+    {.name = "seed",
+     .unit = "1",
+     .default_text = "0",
+     .min = 0,
+     .max = MAX_INTEGER,
+     .meaning = "of sizes, orientations and jitter"},
+    {.name = "velocity",
+     .unit = "m/s",
+     .default_text = "[0, 0, 0]",
+     .min = -MAX_VELOCITY,
+     .max = MAX_VELOCITY,
+     .meaning = "of filled particles at the start; bodies have their own"},
+    {.name = "bodies",
+     .default_text = "[]",
+     .section = &body_section,
+     .max = 1e7,
+     .meaning = "particles placed by hand, instead of count or mass"},
+};
+static const scree_scene_section group_section = {
+    "particles[]", "Groups of particles of one shape and material: filled into a region, or listed in bodies.",
+    group_fields, group_keys, COUNT(group_keys)};
+
+// -------------------------------------------------------------------------------------------------------------- walls
+
+static const cyaml_strval_t motion_kinds[] = {
+    {"fixed", SCREE_MOTION_FIXED}, {"translate", SCREE_MOTION_TRANSLATE}, {"rotate", SCREE_MOTION_ROTATE}};
+static const cyaml_schema_field_t motion_fields[] = {WORD(scree_motion_def, kind, motion_kinds),
+                                                     NUMBERS(scree_motion_def, velocity, 3),
+                                                     NUMBERS(scree_motion_def, axis, 3),
+                                                     NUMBERS(scree_motion_def, centre, 3),
+                                                     NUMBER(scree_motion_def, angular_velocity),
+                                                     NUMBER(scree_motion_def, start),
+                                                     NUMBER(scree_motion_def, end),
+                                                     CYAML_FIELD_END};
+static const scree_scene_key motion_keys[] = {
+    {.name = "kind", .default_text = "fixed", .meaning = "how the wall moves between start and end"},
+    {.name = "velocity",
+     .unit = "m/s",
+     .default_text = "[0, 0, 0]",
+     .min = -MAX_VELOCITY,
+     .max = MAX_VELOCITY,
+     .meaning = "of translate"},
+    {.name = "axis",
+     .default_text = "[0, 0, 0]",
+     .min = -MAX_POSITION,
+     .max = MAX_POSITION,
+     .meaning = "of rotate: direction, of any length but zero"},
+    {.name = "centre",
+     .unit = "m",
+     .default_text = "[0, 0, 0]",
+     .min = -MAX_POSITION,
+     .max = MAX_POSITION,
+     .meaning = "of rotate: a point of the axis"},
+    {.name = "angular_velocity",
+     .unit = "rad/s",
+     .default_text = "0",
+     .min = -1e7,
+     .max = 1e7,
+     .meaning = "of rotate, positive by the right hand rule"},
+    {.name = "start", .unit = "s", .default_text = "0", .min = 0, .max = MAX_TIME, .meaning = "at rest before"},
+    {.name = "end",
+     .unit = "s",
+     .default_text = "never",
+     .special = "never",
+     .min = 0,
+     .max = MAX_TIME,
+     .meaning = "at rest from then on"},
+};
+static const scree_scene_section motion_section = {"walls[].motion", "Prescribed motion of a wall.", motion_fields,
+                                                   motion_keys, COUNT(motion_keys)};
+
+static const cyaml_schema_field_t wall_fields[] = {TEXT(scree_wall_def, name),
+                                                   TEXT(scree_wall_def, shape),
+                                                   TEXT(scree_wall_def, material),
+                                                   NUMBERS(scree_wall_def, position, 3),
+                                                   NUMBERS(scree_wall_def, orientation, 4),
+                                                   SECTION(scree_wall_def, motion, motion_fields),
+                                                   NUMBER(scree_wall_def, removed_at),
+                                                   CYAML_FIELD_END};
+static const scree_scene_key wall_keys[] = {
+    {.name = "name", .rule = SCREE_TEXT_NAME, .meaning = "for messages and --set"},
+    {.name = "shape", .rule = SCREE_TEXT_NAME, .meaning = "name of a shape"},
+    {.name = "material", .rule = SCREE_TEXT_NAME, .meaning = "name of a material; its density is not used"},
+    {.name = "position",
+     .unit = "m",
+     .default_text = "[0, 0, 0]",
+     .min = -MAX_POSITION,
+     .max = MAX_POSITION,
+     .meaning = "of the origin of the mesh: the centre of shapes made by rule"},
+    {.name = "orientation",
+     .unit = "1",
+     .default_text = "[1, 0, 0, 0]",
+     .min = -1e3,
+     .max = 1e3,
+     .meaning = "quaternion (w, x, y, z) about the origin of the mesh; brought to length 1"},
+    {.name = "motion", .default_text = "{}", .section = &motion_section, .meaning = "prescribed motion"},
+    {.name = "removed_at",
+     .unit = "s",
+     .default_text = "never",
+     .special = "never",
+     .min = 0,
+     .max = MAX_TIME,
+     .meaning = "the wall is gone from then on"},
+};
+static const scree_scene_section wall_section = {
+    "walls[]", "Meshes that particles bounce off; nothing moves them but their own motion.", wall_fields, wall_keys,
+    COUNT(wall_keys)};
+
+// --------------------------------------------------------------------------------------------- solver, output, repose
+
+static const char *const overlap_schemes[] = {"filtered", "hierarchy"};
+static const cyaml_schema_field_t solver_fields[] = {NUMBER(scree_solver_def, skin),
+                                                     TEXT(scree_solver_def, overlap_scheme),
+                                                     TRUTH(scree_solver_def, separate_patches), CYAML_FIELD_END};
+static const scree_scene_key solver_keys[] = {
+    {.name = "skin",
+     .unit = "1",
+     .default_text = "0.1",
+     .min = 0,
+     .max = 10,
+     .meaning = "room around the boxes of the neighbour search over the mean bounding radius: more pairs, rarer "
+                "searches; results stay the same"},
+    {.name = "overlap_scheme",
+     .default_text = "filtered",
+     .rule = SCREE_TEXT_WORD,
+     .words = overlap_schemes,
+     .num_words = COUNT(overlap_schemes),
+     .meaning = "filtered: plain signs where they clear their margin; hierarchy: the consistent decisions everywhere"},
+    {.name = "separate_patches",
+     .default_text = "false",
+     .meaning = "a contact for each connected piece of an overlap, instead of one for each pair"},
+};
+static const scree_scene_section solver_section = {"solver", "How contacts are found.", solver_fields, solver_keys,
+                                                   COUNT(solver_keys)};
+
+static const cyaml_schema_field_t output_fields[] = {NUMBER(scree_output_def, series), NUMBER(scree_output_def, frames),
+                                                     NUMBER(scree_output_def, checkpoint), CYAML_FIELD_END};
+static const scree_scene_key output_keys[] = {
+    {.name = "series",
+     .unit = "s",
+     .default_text = "auto",
+     .special = "auto",
+     .min = 0,
+     .max = MAX_TIME,
+     .meaning = "simulated time between rows of series.csv; auto: time.end/200"},
+    {.name = "frames",
+     .unit = "s",
+     .default_text = "auto",
+     .special = "auto",
+     .min = 0,
+     .max = MAX_TIME,
+     .meaning = "between steps of frames.vtkhdf; auto: time.end/50"},
+    {.name = "checkpoint",
+     .unit = "s",
+     .default_text = "auto",
+     .special = "auto",
+     .min = 0,
+     .max = MAX_TIME,
+     .meaning = "between checkpoints; auto: time.end/10"},
+};
+static const scree_scene_section output_section = {"output", "Intervals of simulated time; 0 switches a file off.",
+                                                   output_fields, output_keys, COUNT(output_keys)};
+
+static const cyaml_schema_field_t repose_fields[] = {TRUTH(scree_repose_def, measure), NUMBER(scree_repose_def, from),
+                                                     NUMBER(scree_repose_def, to),     NUMBER(scree_repose_def, base),
+                                                     INTEGER(scree_repose_def, bins),  CYAML_FIELD_END};
+static const scree_scene_key repose_keys[] = {
+    {.name = "measure", .default_text = "false", .meaning = "whether the angle is measured at the end of the run"},
+    {.name = "from",
+     .unit = "m",
+     .default_text = "0",
+     .min = -MAX_POSITION,
+     .max = MAX_POSITION,
+     .meaning = "lower end of the range of x"},
+    {.name = "to",
+     .unit = "m",
+     .default_text = "0",
+     .min = -MAX_POSITION,
+     .max = MAX_POSITION,
+     .meaning = "upper end of the range of x"},
+    {.name = "base",
+     .unit = "m",
+     .default_text = "0",
+     .min = -MAX_POSITION,
+     .max = MAX_POSITION,
+     .meaning = "height of the plate"},
+    {.name = "bins", .unit = "1", .default_text = "20", .min = 4, .max = 256, .meaning = "number of bins along x"},
+};
+static const scree_scene_section repose_section = {
+    "repose", "Angle of repose: largest height in bins along x, fitted by a sigmoid (Bilock 2020, 6.3).", repose_fields,
+    repose_keys, COUNT(repose_keys)};
+
+// --------------------------------------------------------------------------------------------------------------- root
+
+static const cyaml_schema_value_t material_value = {
+    CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, scree_material_def, material_fields)};
+static const cyaml_schema_value_t law_value = {
+    CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, scree_contact_law_def, law_fields)};
+static const cyaml_schema_value_t shape_value = {
+    CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, scree_shape_def, shape_fields)};
+static const cyaml_schema_value_t group_value = {
+    CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, scree_particle_group_def, group_fields)};
+static const cyaml_schema_value_t wall_value = {CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, scree_wall_def, wall_fields)};
+static const cyaml_schema_field_t root_fields[] = {TEXT(scree_scene, name),
+                                                   NUMBERS(scree_scene, gravity, 3),
+                                                   SECTION(scree_scene, time, time_fields),
+                                                   LIST(scree_scene, materials, &material_value),
+                                                   LIST(scree_scene, contact_laws, &law_value),
+                                                   LIST(scree_scene, shapes, &shape_value),
+                                                   LIST(scree_scene, particles, &group_value),
+                                                   LIST(scree_scene, walls, &wall_value),
+                                                   SECTION(scree_scene, solver, solver_fields),
+                                                   SECTION(scree_scene, output, output_fields),
+                                                   SECTION(scree_scene, repose, repose_fields),
+                                                   CYAML_FIELD_END};
+static const scree_scene_key root_keys[] = {
+    {.name = "name", .default_text = "scene", .rule = SCREE_TEXT_FREE, .meaning = "for titles and messages"},
+    {.name = "gravity",
+     .unit = "m/s^2",
+     .default_text = "[0, 0, -9.81]",
+     .min = -1e6,
+     .max = 1e6,
+     .meaning = "acceleration of everything that is free"},
+    {.name = "time", .default_text = "{}", .section = &time_section, .meaning = "how long and in which steps"},
+    {.name = "materials", .default_text = "[]", .section = &material_section, .max = 1000, .meaning = "solids"},
+    {.name = "contact_laws",
+     .default_text = "[]",
+     .section = &law_section,
+     .max = 100000,
+     .meaning = "forces between two materials"},
+    {.name = "shapes", .default_text = "[]", .section = &shape_section, .max = 100000, .meaning = "meshes"},
+    {.name = "particles",
+     .default_text = "[]",
+     .section = &group_section,
+     .max = 100000,
+     .meaning = "groups of particles"},
+    {.name = "walls",
+     .default_text = "[]",
+     .section = &wall_section,
+     .max = 100000,
+     .meaning = "meshes with a prescribed motion"},
+    {.name = "solver", .default_text = "{}", .section = &solver_section, .meaning = "how contacts are found"},
+    {.name = "output", .default_text = "{}", .section = &output_section, .meaning = "what is written, how often"},
+    {.name = "repose", .default_text = "{}", .section = &repose_section, .meaning = "measurement of a pile"},
+};
+static const scree_scene_section root_section = {"scene", "The top of the file.", root_fields, root_keys,
+                                                 COUNT(root_keys)};
+static const cyaml_schema_value_t root_value = {CYAML_VALUE_MAPPING(CYAML_FLAG_POINTER, scree_scene, root_fields)};
+
+const scree_scene_section *scree_scene_root(void) { return &root_section; }
+const cyaml_schema_value_t *scree_scene_root_value(void) { return &root_value; }

@@ -1,6 +1,7 @@
 /// \file shape_command.c
 /// scree shape: what a mesh is worth as a body. Reads or generates meshes, tells their measures or why they are
 /// refused, simplifies them, scales them, writes them.
+#include "cli/commands.h"
 #include "polyhedra/generate.h"
 #include "polyhedra/import.h"
 #include "polyhedra/mesh_edges.h"
@@ -12,13 +13,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-enum
-{
-    EXIT_DONE = 0,
-    EXIT_REFUSED = 1, ///< a mesh was refused or could not be read or written
-    EXIT_USAGE = 2    ///< the command line was not understood
-};
 
 static const char usage[] =
     "usage: scree shape [options] FILE...\n"
@@ -39,7 +33,8 @@ static const char usage[] =
     "  --json            tell everything as a JSON array, one object for each input\n"
     "  --help            this text\n"
     "\n"
-    "Exit code: 0 if every mesh is a valid body, 1 if one was refused, 2 for a wrong command line.\n";
+    "Exit code: 0 if every mesh is a valid body, 1 if one could not be read or written, 2 if one was refused or the\n"
+    "command line is wrong.\n";
 
 /// The command line, understood.
 typedef struct shape_request
@@ -298,7 +293,8 @@ static void print_text(const shape_result *r)
                    r->rounding);
     }
     else printf("  refused: %s\n", scree_status_text(r->status));
-    for (int i = 0; i < r->report.num_messages; ++i) printf("  %s\n", r->report.messages[i]);
+    fflush(stdout);
+    scree_print_report(&r->report);
 }
 
 static void print_json_string(const char *text)
@@ -363,38 +359,41 @@ static void print_json(const shape_result *r, bool is_first, bool is_last)
     printf("]\n  }%s\n", is_last ? "\n]" : ",");
 }
 
+static int exit_code_of(scree_status status)
+{
+    if (status == SCREE_OK) return SCREE_EXIT_DONE;
+    return status == SCREE_BAD_MESH || status == SCREE_INVALID_INPUT ? SCREE_EXIT_USAGE : SCREE_EXIT_FAILED;
+}
+
 static int run(const shape_request *request)
 {
-    int exit_code = EXIT_DONE;
+    int exit_code = SCREE_EXIT_DONE;
     for (int i = 0; i < request->num_inputs; ++i)
     {
         shape_result result = {.name = request->inputs[i]};
         work_on(&result, request, request->is_generated[i]);
         if (request->is_json) print_json(&result, i == 0, i == request->num_inputs - 1);
         else print_text(&result);
-        if (result.status != SCREE_OK) exit_code = EXIT_REFUSED;
+        if (exit_code_of(result.status) > exit_code) exit_code = exit_code_of(result.status);
         scree_mesh_destroy(&result.mesh);
         scree_report_clear(&result.report);
     }
     return exit_code;
 }
 
-/// argv[0] is "shape".
-int scree_shape_command(int argc, char **argv);
-
 int scree_shape_command(int argc, char **argv)
 {
     shape_request request = {0};
     request.inputs = calloc((size_t)argc + 1, sizeof *request.inputs);
     request.is_generated = calloc((size_t)argc + 1, sizeof *request.is_generated);
-    int exit_code = EXIT_REFUSED;
+    int exit_code = SCREE_EXIT_FAILED;
     if (request.inputs == NULL || request.is_generated == NULL)
         fprintf(stderr, "scree shape: %s\n", scree_status_text(SCREE_OUT_OF_MEMORY));
-    else if (!parse_command_line(&request, argc, argv)) exit_code = EXIT_USAGE;
+    else if (!parse_command_line(&request, argc, argv)) exit_code = SCREE_EXIT_USAGE;
     else if (request.wants_help)
     {
         fputs(usage, stdout);
-        exit_code = EXIT_DONE;
+        exit_code = SCREE_EXIT_DONE;
     }
     else exit_code = run(&request);
     free(request.inputs);

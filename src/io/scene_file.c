@@ -63,7 +63,7 @@ static scree_status read_text(scree_scene_file *file, scree_scene_reader *reader
 {
     scree_status status = scree_yaml_parse(&reader->tree, text, &reader->root, reader->report);
     if (status != SCREE_OK) return status;
-    if (reader->root == NULL)
+    if (reader->root == NULL || scree_yaml_is_null(reader->root))
     {
         scree_report_add(reader->report,
                          "%.600s: there is nothing in it; the smallest scene is \"time: {end: 1, step: 1e-4}\"",

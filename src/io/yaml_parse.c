@@ -22,13 +22,14 @@ typedef struct tree_reader
 } tree_reader;
 
 /// What to do about a fault of libyaml; the texts are those of libyaml 0.2.
-static const char *remedy_for(const char *problem, char character)
+static const char *remedy_for(const char *problem, bool is_after_tab)
 {
     static const struct
     {
         const char *problem, *remedy;
     } remedies[] = {
         {"mapping values are not allowed", "check the indentation, and put texts that hold \": \" in quotes"},
+        {"did not find expected node content", "a value or a closing bracket is missing"},
         {"did not find expected key", "check the indentation and the brackets before it"},
         {"did not find expected '-' indicator", "list items of one list start in the same column, each with \"- \""},
         {"did not find expected ',' or ']'", "close the list with ]"},
@@ -38,12 +39,11 @@ static const char *remedy_for(const char *problem, char character)
         {"found unexpected end of stream", "close the quotes"},
         {"did not find expected <document start>", "indent all keys of the scene alike"},
         {"control characters are not allowed", "a scene is a plain text in UTF-8"},
-        {"invalid leading UTF-8 octet", "a scene is a plain text in UTF-8"},
-        {"invalid trailing UTF-8 octet", "a scene is a plain text in UTF-8"},
-        {"incomplete UTF-8 octet sequence", "a scene is a plain text in UTF-8"},
+        {"UTF-8", "a scene is a plain text in UTF-8"},
+        {"UTF-16", "a scene is a plain text in UTF-8"},
     };
     if (strstr(problem, "cannot start any token") != NULL)
-        return character == '\t' ? "indent with spaces, not with tabs" : "put the text in quotes";
+        return is_after_tab ? "indent with spaces, not with tabs" : "put the text in quotes";
     for (size_t k = 0; k < sizeof remedies / sizeof remedies[0]; ++k)
         if (strstr(problem, remedies[k].problem) != NULL) return remedies[k].remedy;
     return "compare with the scenes that come with scree";
@@ -56,6 +56,14 @@ static int64_t line_of_offset(const scree_yaml_text *text, size_t offset)
     return line;
 }
 
+static bool is_indented_by_tab(const scree_yaml_text *text, size_t line)
+{
+    size_t k = 0;
+    for (; line > 0 && k < text->length; ++k) line -= text->text[k] == '\n';
+    while (k < text->length && text->text[k] == ' ') ++k;
+    return k < text->length && text->text[k] == '\t';
+}
+
 /// Tells what libyaml found.
 static scree_status tell_syntax(const yaml_parser_t *parser, const scree_yaml_text *text, scree_report *report)
 {
@@ -63,19 +71,18 @@ static scree_status tell_syntax(const yaml_parser_t *parser, const scree_yaml_te
     if (parser->error == YAML_MEMORY_ERROR) return SCREE_OUT_OF_MEMORY;
     if (parser->error == YAML_READER_ERROR)
     {
-        scree_report_add(report, "%s:%lld: byte %zu (0x%02x): %s; %s", text->name,
-                         (long long)line_of_offset(text, parser->problem_offset), parser->problem_offset,
-                         (unsigned)parser->problem_value, problem, remedy_for(problem, '\0'));
+        scree_report_add(report, "%s:%lld: byte %zu: %s; %s", text->name,
+                         (long long)line_of_offset(text, parser->problem_offset), parser->problem_offset, problem,
+                         remedy_for(problem, false));
         return SCREE_INVALID_INPUT;
     }
     const yaml_mark_t at = parser->problem_mark;
-    const char character = at.index < text->length ? text->text[at.index] : '\0';
     char context[200] = "";
     if (parser->context != NULL)
         snprintf(context, sizeof context, " %s that starts in line %zu", parser->context,
                  parser->context_mark.line + 1);
     scree_report_add(report, "%s:%zu:%zu: %s%s; %s", text->name, at.line + 1, at.column + 1, problem, context,
-                     remedy_for(problem, character));
+                     remedy_for(problem, is_indented_by_tab(text, at.line)));
     return SCREE_INVALID_INPUT;
 }
 

@@ -11,6 +11,7 @@
 
 enum
 {
+    BLOCK_LEAVES = 256,  ///< larger ones save atomic counters, smaller ones share the work better
     MAX_LEAVES = 1 << 30 ///< 2 num_leaves - 1 nodes must have an int32_t index
 };
 
@@ -21,26 +22,21 @@ struct scree_lbvh_buffers
     int64_t max_leaves;
 };
 
-static void destroy_arrays(scree_lbvh_build_args *arrays)
+static void destroy_buffers(struct scree_lbvh_buffers *b)
 {
-    free(arrays->first_leaf);
-    free(arrays->last_leaf);
-    free(arrays->num_left_turns);
-    free(arrays->nodes);
-    free(arrays->parents);
-    free(arrays->arrivals);
-    free(arrays->chunk_bounds);
-    *arrays = (scree_lbvh_build_args){0};
+    free(b->arrays.first_leaf);
+    free(b->arrays.last_leaf);
+    free(b->arrays.num_left_turns);
+    free(b->arrays.nodes);
+    free(b->arrays.arrivals);
+    free(b->arrays.chunk_bounds);
+    scree_sort_destroy(&b->sort);
 }
 
 void scree_lbvh_destroy(scree_lbvh *tree)
 {
-    if (tree->buffers != NULL)
-    {
-        destroy_arrays(&tree->buffers->arrays);
-        scree_sort_destroy(&tree->buffers->sort);
-        free(tree->buffers);
-    }
+    if (tree->buffers != NULL) destroy_buffers(tree->buffers);
+    free(tree->buffers);
     *tree = (scree_lbvh){.view = {NULL, 0, SCREE_LBVH_END}};
 }
 
@@ -51,39 +47,40 @@ static scree_status reserve(scree_lbvh *tree, int64_t num_leaves)
     if (tree->buffers == NULL) tree->buffers = calloc(1, sizeof *tree->buffers);
     if (tree->buffers == NULL) return SCREE_OUT_OF_MEMORY;
     struct scree_lbvh_buffers *b = tree->buffers;
-    if (scree_sort_reserve(&b->sort, num_leaves, true) != SCREE_OK) return SCREE_OUT_OF_MEMORY;
     if (num_leaves <= b->max_leaves) return SCREE_OK;
 
-    const bool is_first = b->max_leaves == 0;
-    const int64_t max_leaves = is_first ? num_leaves : scree_buffer_grown(num_leaves);
-    scree_lbvh_build_args grown = {0};
-    grown.first_leaf = scree_buffer_alloc(max_leaves, sizeof *grown.first_leaf);
-    grown.last_leaf = scree_buffer_alloc(max_leaves, sizeof *grown.last_leaf);
-    grown.num_left_turns = scree_buffer_alloc(max_leaves, sizeof *grown.num_left_turns);
-    grown.nodes = scree_buffer_alloc(2 * max_leaves, sizeof *grown.nodes);
-    grown.parents = scree_buffer_alloc(2 * max_leaves, sizeof *grown.parents);
-    grown.arrivals = scree_buffer_alloc(2 * max_leaves, sizeof *grown.arrivals);
-    grown.chunk_bounds = scree_buffer_alloc(SCREE_LBVH_BOUNDS_CHUNKS, sizeof *grown.chunk_bounds);
-    if (grown.first_leaf == NULL || grown.last_leaf == NULL || grown.num_left_turns == NULL || grown.nodes == NULL ||
-        grown.parents == NULL || grown.arrivals == NULL || grown.chunk_bounds == NULL)
+    // a first build takes what it needs: trees of shapes and walls do not grow
+    const int64_t max_leaves = b->max_leaves == 0 ? num_leaves : scree_buffer_grown(num_leaves);
+    struct scree_lbvh_buffers grown = {.max_leaves = max_leaves};
+    grown.arrays.first_leaf = scree_buffer_alloc(max_leaves, sizeof *grown.arrays.first_leaf);
+    grown.arrays.last_leaf = scree_buffer_alloc(max_leaves, sizeof *grown.arrays.last_leaf);
+    grown.arrays.num_left_turns = scree_buffer_alloc(max_leaves, sizeof *grown.arrays.num_left_turns);
+    grown.arrays.nodes = scree_buffer_alloc(2 * max_leaves, sizeof *grown.arrays.nodes);
+    grown.arrays.arrivals = scree_buffer_alloc(max_leaves, sizeof *grown.arrays.arrivals);
+    grown.arrays.chunk_bounds = scree_buffer_alloc(SCREE_LBVH_BOUNDS_CHUNKS, sizeof *grown.arrays.chunk_bounds);
+    const bool has_all = grown.arrays.first_leaf != NULL && grown.arrays.last_leaf != NULL &&
+                         grown.arrays.num_left_turns != NULL && grown.arrays.nodes != NULL &&
+                         grown.arrays.arrivals != NULL && grown.arrays.chunk_bounds != NULL;
+    if (!has_all || scree_sort_reserve(&grown.sort, max_leaves, true) != SCREE_OK)
     {
-        destroy_arrays(&grown);
+        destroy_buffers(&grown);
         return SCREE_OUT_OF_MEMORY;
     }
     // the kernels leave the arrivals at 0, so this is done once
-    for (int64_t k = 0; k < 2 * max_leaves; ++k) grown.arrivals[k] = 0;
-    destroy_arrays(&b->arrays);
-    b->arrays = grown;
-    b->max_leaves = max_leaves;
+    for (int64_t r = 0; r < max_leaves; ++r) grown.arrays.arrivals[r] = 0;
+    destroy_buffers(b);
+    *b = grown;
     return SCREE_OK;
 }
 
-static scree_box bound_middles(scree_lbvh_build_args args)
+static int64_t count_blocks(int64_t num_leaves) { return (num_leaves + BLOCK_LEAVES - 1) / BLOCK_LEAVES; }
+
+static scree_morton_frame bound_middles(scree_lbvh_build_args args)
 {
     scree_lbvh_bounds_launch(args, SCREE_LBVH_BOUNDS_CHUNKS);
     scree_box bounds = scree_box_empty();
     for (int c = 0; c < SCREE_LBVH_BOUNDS_CHUNKS; ++c) bounds = scree_box_union(bounds, args.chunk_bounds[c]);
-    return bounds;
+    return scree_morton_frame_make(bounds);
 }
 
 scree_status scree_lbvh_build(scree_lbvh *tree, const scree_box *boxes, int64_t num_boxes)
@@ -99,18 +96,17 @@ scree_status scree_lbvh_build(scree_lbvh *tree, const scree_box *boxes, int64_t 
     scree_lbvh_build_args args = b->arrays;
     args.boxes = boxes;
     args.num_leaves = num_boxes;
-    args.bounds = bound_middles(args);
+    args.block_leaves = BLOCK_LEAVES;
+    args.frame = bound_middles(args);
     args.codes = b->sort.keys;
     args.items = b->sort.values;
     scree_lbvh_codes_launch(args, num_boxes);
-    scree_sort(&b->sort, num_boxes);
+    scree_sort(&b->sort, num_boxes, 0);
     args.codes = b->sort.keys;
     args.items = b->sort.values;
     scree_lbvh_hierarchy_launch(args, num_boxes - 1);
     scree_lbvh_left_turns_launch(args, num_boxes);
-    scree_lbvh_leaves_launch(args, num_boxes);
-    scree_lbvh_inner_nodes_launch(args, num_boxes - 1);
-    scree_lbvh_refit_launch(args, num_boxes);
+    scree_lbvh_nodes_launch(args, count_blocks(num_boxes));
     return SCREE_OK;
 }
 
@@ -120,7 +116,9 @@ void scree_lbvh_refit(scree_lbvh *tree, const scree_box *boxes)
     scree_lbvh_build_args args = tree->buffers->arrays;
     args.boxes = boxes;
     args.num_leaves = tree->view.num_leaves;
-    scree_lbvh_refit_launch(args, args.num_leaves);
+    args.block_leaves = BLOCK_LEAVES;
+    args.items = tree->buffers->sort.values;
+    scree_lbvh_nodes_launch(args, count_blocks(args.num_leaves));
 }
 
 /// Smallest number that is wrong about node k, as text; NULL if all is well.

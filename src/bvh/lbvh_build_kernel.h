@@ -14,6 +14,14 @@
 /// The boxes are bounded in this many shares.
 #define SCREE_LBVH_BOUNDS_CHUNKS 256
 
+/// Leaves between asking for a box and reading it.
+#define SCREE_LBVH_LOOK_AHEAD 16
+#ifdef __CUDA_ARCH__
+#define SCREE_LBVH_PREFETCH(address) ((void)(address))
+#else
+#define SCREE_LBVH_PREFETCH(address) __builtin_prefetch(address)
+#endif
+
 /// Arrays of a build. Sorted leaf r is item items[r] with code codes[r].
 typedef struct scree_lbvh_build_args
 {
@@ -23,21 +31,19 @@ typedef struct scree_lbvh_build_args
     int32_t *first_leaf;     ///< (num_leaves - 1) of the node with this split
     int32_t *last_leaf;      ///< (num_leaves - 1) of the node with this split
     uint8_t *num_left_turns; ///< (num_leaves) on the way from the root to leaf r
+    int32_t *arrivals;       ///< (num_leaves - 1) children that have arrived at this split; 0 between launches
     scree_lbvh_node *nodes;  ///< (2 num_leaves - 1)
-    int32_t *parents;        ///< (2 num_leaves - 1) index of the parent node
-    int32_t *arrivals;       ///< (2 num_leaves - 1) children that have arrived at the node; 0 between launches
     scree_box *chunk_bounds; ///< (SCREE_LBVH_BOUNDS_CHUNKS)
     int64_t num_leaves;
-    scree_box bounds; ///< of the middles of the boxes
+    int64_t block_leaves; ///< sorted leaves per call of the last pass
+    scree_morton_frame frame;
 } scree_lbvh_build_args;
 
 typedef scree_lbvh_build_args scree_lbvh_bounds_args;
 typedef scree_lbvh_build_args scree_lbvh_codes_args;
 typedef scree_lbvh_build_args scree_lbvh_hierarchy_args;
 typedef scree_lbvh_build_args scree_lbvh_left_turns_args;
-typedef scree_lbvh_build_args scree_lbvh_leaves_args;
-typedef scree_lbvh_build_args scree_lbvh_inner_nodes_args;
-typedef scree_lbvh_build_args scree_lbvh_refit_args;
+typedef scree_lbvh_build_args scree_lbvh_nodes_args;
 
 /// Bounds of the middles of share c of the boxes.
 SCREE_FN void scree_lbvh_bounds_at(scree_lbvh_bounds_args a, int64_t c)
@@ -52,7 +58,7 @@ SCREE_FN void scree_lbvh_bounds_at(scree_lbvh_bounds_args a, int64_t c)
 /// Code of box i, before the sort.
 SCREE_FN void scree_lbvh_codes_at(scree_lbvh_codes_args a, int64_t i)
 {
-    a.codes[i] = scree_morton_code(scree_box_middle(a.boxes[i]), a.bounds);
+    a.codes[i] = scree_morton_code(scree_box_middle(a.boxes[i]), a.frame);
     a.items[i] = (int32_t)i;
 }
 
@@ -110,38 +116,56 @@ SCREE_FN int32_t scree_lbvh_place(scree_lbvh_build_args a, int64_t first, int64_
     return (int32_t)(2 * first + a.num_left_turns[last]);
 }
 
-/// Node of sorted leaf r, without its box.
-SCREE_FN void scree_lbvh_leaves_at(scree_lbvh_leaves_args a, int64_t r)
+/// Node of sorted leaf r.
+SCREE_FN scree_lbvh_node scree_lbvh_leaf(scree_lbvh_build_args a, int64_t r, int32_t place)
 {
-    const int32_t k = scree_lbvh_place(a, r, r);
-    a.nodes[k].first_child = -1 - a.items[r];
-    a.nodes[k].escape = r + 1 < a.num_leaves ? k + 1 : SCREE_LBVH_END;
+    scree_lbvh_node node;
+    node.box = a.boxes[a.items[r]];
+    node.first_child = -1 - a.items[r];
+    node.escape = r + 1 < a.num_leaves ? place + 1 : SCREE_LBVH_END;
+    return node;
 }
 
-/// Inner node with this split, without its box; tells its children who their parent is.
-SCREE_FN void scree_lbvh_inner_nodes_at(scree_lbvh_inner_nodes_args a, int64_t split)
+/// Block of sorted leaves, and every ancestor at which this call is the second to arrive: links and boxes. A box is
+/// the union of the left and the right child's box in this order, whoever comes first. The arrivals are left at 0
+/// again, so the same call with other boxes refits the tree. Nodes over leaves of this block alone are met by no other
+/// call, so only the others need an atomic counter.
+SCREE_FN void scree_lbvh_nodes_at(scree_lbvh_nodes_args a, int64_t block)
 {
-    const int64_t first = a.first_leaf[split], last = a.last_leaf[split];
-    const int32_t k = scree_lbvh_place(a, first, last);
-    a.nodes[k].first_child = k + 1;
-    a.nodes[k].escape = last + 1 < a.num_leaves ? (int32_t)(k + 2 * (last - first) + 1) : SCREE_LBVH_END;
-    a.parents[k + 1] = k;
-    a.parents[scree_lbvh_place(a, split + 1, last)] = k;
-}
-
-/// Box of sorted leaf r, and of every ancestor at which this call is the second to arrive: the union of the left and
-/// the right child's box in this order, whoever comes first. The arrivals are left at 0 again.
-SCREE_FN void scree_lbvh_refit_at(scree_lbvh_refit_args a, int64_t r)
-{
-    int32_t k = scree_lbvh_place(a, r, r);
-    a.nodes[k].box = a.boxes[-1 - a.nodes[k].first_child];
-    while (k > 0)
+    const int64_t begin = block * a.block_leaves;
+    const int64_t end = begin + a.block_leaves < a.num_leaves ? begin + a.block_leaves : a.num_leaves;
+    for (int64_t r = begin; r < end; ++r)
     {
-        k = a.parents[k];
-        if (scree_atomic_add_int32(a.arrivals + k, 1) == 0) return;
-        a.arrivals[k] = 0;
-        const scree_lbvh_node *left = a.nodes + k + 1;
-        a.nodes[k].box = scree_box_union(left->box, a.nodes[left->escape].box);
+        // items lie anywhere in memory: asking for their boxes early takes most of the time out of this pass
+        if (r + SCREE_LBVH_LOOK_AHEAD < a.num_leaves) SCREE_LBVH_PREFETCH(a.boxes + a.items[r + SCREE_LBVH_LOOK_AHEAD]);
+        int64_t first = r, last = r;
+        int32_t k = scree_lbvh_place(a, r, r);
+        scree_lbvh_node node = scree_lbvh_leaf(a, r, k);
+        a.nodes[k] = node;
+        while (last - first + 1 < a.num_leaves)
+        {
+            // the parent splits after this node's last leaf or before its first one
+            const bool is_left = last + 1 < a.num_leaves && a.first_leaf[last] == first;
+            const int64_t split = is_left ? last : first - 1;
+            first = a.first_leaf[split];
+            last = a.last_leaf[split];
+            if (first >= begin && last < end)
+            {
+                a.arrivals[split] ^= 1;
+                if (a.arrivals[split] == 1) break;
+            }
+            else
+            {
+                if (scree_atomic_add_int32(a.arrivals + split, 1) == 0) break;
+                a.arrivals[split] = 0;
+            }
+            k = scree_lbvh_place(a, first, last);
+            if (is_left) node.box = scree_box_union(node.box, a.nodes[scree_lbvh_place(a, split + 1, last)].box);
+            else node.box = scree_box_union(a.nodes[k + 1].box, node.box);
+            node.first_child = k + 1;
+            node.escape = last + 1 < a.num_leaves ? (int32_t)(k + 2 * (last - first) + 1) : SCREE_LBVH_END;
+            a.nodes[k] = node;
+        }
     }
 }
 

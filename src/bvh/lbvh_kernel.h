@@ -48,4 +48,26 @@ SCREE_FN int32_t scree_lbvh_next_overlap(scree_lbvh_view tree, scree_box query, 
     return -1;
 }
 
+/// Squared distance of a point to a box; 0 inside.
+SCREE_FN scree_real scree_box_distance_squared(scree_box box, scree_vec3 p)
+{
+    const scree_real x = scree_max(0, scree_max(box.lower.x - p.x, p.x - box.upper.x));
+    const scree_real y = scree_max(0, scree_max(box.lower.y - p.y, p.y - box.upper.y));
+    const scree_real z = scree_max(0, scree_max(box.lower.z - p.z, p.z - box.upper.z));
+    return x * x + y * y + z * z;
+}
+
+/// True if a leaf's box is no farther than `radius` from `centre`.
+SCREE_FN bool scree_lbvh_meets_sphere(scree_lbvh_view tree, scree_vec3 centre, scree_real radius)
+{
+    for (int32_t k = tree.root; k != SCREE_LBVH_END;)
+    {
+        const scree_lbvh_node *node = tree.nodes + k;
+        const bool is_met = scree_box_distance_squared(node->box, centre) <= radius * radius;
+        if (is_met && node->first_child < 0) return true;
+        k = is_met ? k + 1 : node->escape;
+    }
+    return false;
+}
+
 #endif

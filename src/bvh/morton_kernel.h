@@ -45,26 +45,38 @@ SCREE_FN scree_vec3 scree_box_middle(scree_box box)
     return scree_vec3_add(scree_vec3_scale(box.lower, half), scree_vec3_scale(box.upper, half));
 }
 
-/// Cell of the coordinate x, bounds from `lower`, cells of half_extent / 2^20. What is not a number goes to cell 0.
-SCREE_FN uint64_t scree_morton_cell(scree_real x, scree_real lower, scree_real half_extent)
+/// Cells of the codes: cubes, 2^21 to the longest side of the bounds.
+typedef struct scree_morton_frame
+{
+    scree_vec3 half_lower; ///< half of the lowest coordinates
+    scree_real scale;      ///< cells per half unit of length; may be infinite for bounds without extent
+} scree_morton_frame;
+
+SCREE_FN scree_morton_frame scree_morton_frame_make(scree_box bounds)
 {
     const scree_real half = (scree_real)0.5;
+    const scree_vec3 lower = scree_vec3_scale(bounds.lower, half);
+    const scree_vec3 extent = scree_vec3_sub(scree_vec3_scale(bounds.upper, half), lower);
+    scree_morton_frame frame;
+    frame.half_lower = lower;
+    frame.scale = (scree_real)(1 << SCREE_MORTON_BITS) / scree_max(scree_max(extent.x, extent.y), extent.z);
+    return frame;
+}
+
+/// Cell of one coordinate. What is outside goes to the nearest cell, what is not a number to cell 0.
+SCREE_FN uint64_t scree_morton_cell(scree_real x, scree_real half_lower, scree_real scale)
+{
     const scree_real last = (scree_real)((1 << SCREE_MORTON_BITS) - 1);
-    const scree_real cell = (half * x - half * lower) / half_extent * (scree_real)(1 << SCREE_MORTON_BITS);
+    const scree_real cell = ((scree_real)0.5 * x - half_lower) * scale;
     if (!(cell > 0)) return 0;
     return (uint64_t)(cell < last ? cell : last);
 }
 
-/// Code of a point within the bounds.
-SCREE_FN uint64_t scree_morton_code(scree_vec3 point, scree_box bounds)
+SCREE_FN uint64_t scree_morton_code(scree_vec3 point, scree_morton_frame frame)
 {
-    const scree_real half = (scree_real)0.5;
-    const scree_vec3 lower = bounds.lower;
-    const scree_real x = half * bounds.upper.x - half * lower.x, y = half * bounds.upper.y - half * lower.y;
-    const scree_real half_extent = scree_max(scree_max(x, y), half * bounds.upper.z - half * lower.z);
-    return scree_morton_encode(scree_morton_cell(point.x, lower.x, half_extent),
-                               scree_morton_cell(point.y, lower.y, half_extent),
-                               scree_morton_cell(point.z, lower.z, half_extent));
+    return scree_morton_encode(scree_morton_cell(point.x, frame.half_lower.x, frame.scale),
+                               scree_morton_cell(point.y, frame.half_lower.y, frame.scale),
+                               scree_morton_cell(point.z, frame.half_lower.z, frame.scale));
 }
 
 #endif

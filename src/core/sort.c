@@ -7,6 +7,14 @@
 #include <omp.h>
 #endif
 
+/// Unrolls the next loop. On some processors the counters of a loop that is not unrolled wait for each other, whether
+/// they are the same or not: measured 10 ns per item and digit, and 4 ns unrolled (AMD EPYC).
+#if defined(__clang__)
+#define UNROLL_LOOP _Pragma("clang loop unroll_count(16)")
+#else
+#define UNROLL_LOOP _Pragma("GCC unroll 16")
+#endif
+
 enum
 {
     DIGIT_BITS = 8,
@@ -23,7 +31,7 @@ scree_status scree_sort_reserve(scree_sort_buffers *buffers, int64_t num_items, 
         return SCREE_OK;
     scree_sort_buffers grown = {0};
     grown.has_values = buffers->has_values || has_values;
-    grown.max_items = num_items <= buffers->max_items ? buffers->max_items : scree_buffer_grown(num_items);
+    grown.max_items = num_items <= buffers->max_items ? buffers->max_items : num_items;
     grown.keys = scree_buffer_alloc(grown.max_items, sizeof *grown.keys);
     grown.spare_keys = scree_buffer_alloc(grown.max_items, sizeof *grown.keys);
     grown.counts = scree_buffer_alloc(MAX_CHUNKS * NUM_DIGITS, sizeof *grown.counts);
@@ -64,14 +72,14 @@ static int count_chunks(int64_t num_items)
 
 static int64_t first_of_chunk(int64_t num_items, int num_chunks, int c) { return num_items * c / num_chunks; }
 
-static void insertion_sort(scree_sort_buffers *buffers, int64_t num_items)
+static void insertion_sort(scree_sort_buffers *buffers, int64_t num_items, int first_bit)
 {
     for (int64_t i = 1; i < num_items; ++i)
     {
         const uint64_t key = buffers->keys[i];
         const int32_t value = buffers->has_values ? buffers->values[i] : 0;
         int64_t k = i;
-        for (; k > 0 && buffers->keys[k - 1] > key; --k)
+        for (; k > 0 && buffers->keys[k - 1] >> first_bit > key >> first_bit; --k)
         {
             buffers->keys[k] = buffers->keys[k - 1];
             if (buffers->has_values) buffers->values[k] = buffers->values[k - 1];
@@ -91,10 +99,11 @@ static uint64_t find_varying_bits(const uint64_t *keys, int64_t num_items)
     return varying;
 }
 
-static void count_digits(const uint64_t *keys, int64_t begin, int64_t end, int shift, uint32_t *counts)
+static void count_digits(const uint64_t *keys, int64_t num_items, int shift, uint32_t *counts)
 {
     for (int d = 0; d < NUM_DIGITS; ++d) counts[d] = 0;
-    for (int64_t i = begin; i < end; ++i) ++counts[keys[i] >> shift & (NUM_DIGITS - 1)];
+    UNROLL_LOOP
+    for (int64_t i = 0; i < num_items; ++i) ++counts[keys[i] >> shift & (NUM_DIGITS - 1)];
 }
 
 /// Counts to places: digit by digit, and for equal digits chunk by chunk.
@@ -112,14 +121,33 @@ static void counts_to_places(uint32_t *counts, int num_chunks)
     }
 }
 
-static void scatter_items(const scree_sort_buffers *b, int64_t begin, int64_t end, int shift, uint32_t *places)
+/// Keys begin .. end - 1 to their places.
+static void scatter_keys(const scree_sort_buffers *b, int64_t begin, int64_t end, int shift, uint32_t *places)
 {
+    const uint64_t *restrict keys = b->keys;
+    uint64_t *restrict sorted_keys = b->spare_keys;
+    UNROLL_LOOP
     for (int64_t i = begin; i < end; ++i)
     {
-        const uint64_t key = b->keys[i];
+        const uint64_t key = keys[i];
+        sorted_keys[places[key >> shift & (NUM_DIGITS - 1)]++] = key;
+    }
+}
+
+/// Keys and values begin .. end - 1 to their places.
+static void scatter_items(const scree_sort_buffers *b, int64_t begin, int64_t end, int shift, uint32_t *places)
+{
+    const uint64_t *restrict keys = b->keys;
+    const int32_t *restrict values = b->values;
+    uint64_t *restrict sorted_keys = b->spare_keys;
+    int32_t *restrict sorted_values = b->spare_values;
+    UNROLL_LOOP
+    for (int64_t i = begin; i < end; ++i)
+    {
+        const uint64_t key = keys[i];
         const uint32_t place = places[key >> shift & (NUM_DIGITS - 1)]++;
-        b->spare_keys[place] = key;
-        if (b->has_values) b->spare_values[place] = b->values[i];
+        sorted_keys[place] = key;
+        sorted_values[place] = values[i];
     }
 }
 
@@ -128,13 +156,20 @@ static void sort_digit(scree_sort_buffers *buffers, int64_t num_items, int shift
     const int num_chunks = count_chunks(num_items);
 #pragma omp parallel for schedule(static, 1) num_threads(num_chunks)
     for (int c = 0; c < num_chunks; ++c)
-        count_digits(buffers->keys, first_of_chunk(num_items, num_chunks, c),
-                     first_of_chunk(num_items, num_chunks, c + 1), shift, buffers->counts + c * NUM_DIGITS);
+    {
+        const int64_t begin = first_of_chunk(num_items, num_chunks, c);
+        const int64_t end = first_of_chunk(num_items, num_chunks, c + 1);
+        count_digits(buffers->keys + begin, end - begin, shift, buffers->counts + c * NUM_DIGITS);
+    }
     counts_to_places(buffers->counts, num_chunks);
 #pragma omp parallel for schedule(static, 1) num_threads(num_chunks)
     for (int c = 0; c < num_chunks; ++c)
-        scatter_items(buffers, first_of_chunk(num_items, num_chunks, c), first_of_chunk(num_items, num_chunks, c + 1),
-                      shift, buffers->counts + c * NUM_DIGITS);
+    {
+        const int64_t begin = first_of_chunk(num_items, num_chunks, c);
+        const int64_t end = first_of_chunk(num_items, num_chunks, c + 1);
+        if (buffers->has_values) scatter_items(buffers, begin, end, shift, buffers->counts + c * NUM_DIGITS);
+        else scatter_keys(buffers, begin, end, shift, buffers->counts + c * NUM_DIGITS);
+    }
 
     uint64_t *keys = buffers->keys;
     int32_t *values = buffers->values;
@@ -144,16 +179,16 @@ static void sort_digit(scree_sort_buffers *buffers, int64_t num_items, int shift
     buffers->spare_values = values;
 }
 
-void scree_sort(scree_sort_buffers *buffers, int64_t num_items)
+void scree_sort(scree_sort_buffers *buffers, int64_t num_items, int first_bit)
 {
     if (num_items < 2) return;
     if (num_items <= MAX_INSERTION_ITEMS)
     {
-        insertion_sort(buffers, num_items);
+        insertion_sort(buffers, num_items, first_bit);
         return;
     }
     // a digit starts at the lowest bit that is left: gaps between the used bits of composed keys are skipped
-    uint64_t varying = find_varying_bits(buffers->keys, num_items);
+    uint64_t varying = find_varying_bits(buffers->keys, num_items) >> first_bit << first_bit;
     for (int shift = 0; varying != 0; ++shift)
     {
         if ((varying >> shift & 1) == 0) continue;

@@ -19,12 +19,13 @@ typedef struct scree_sort_buffers
     bool has_values;
 } scree_sort_buffers;
 
-/// Makes room for num_items; what was stored is lost if it has to grow. Refused, with nothing changed:
+/// Makes room for exactly num_items or more; what was stored is lost if it has to grow. Refused, with nothing changed:
 /// SCREE_OUT_OF_MEMORY, SCREE_TOO_MANY above 2^32 - 1.
 scree_status scree_sort_reserve(scree_sort_buffers *buffers, int64_t num_items, bool has_values);
-/// Sorts the first num_items keys ascending, and the values with them if there are any. Equal keys keep their order.
-/// Bits in which no two keys differ cost nothing.
-void scree_sort(scree_sort_buffers *buffers, int64_t num_items);
+/// Sorts the first num_items keys ascending, and the values with them if there are any. The lowest first_bit bits of a
+/// key are not looked at. Keys that are equal in the others keep their order; bits in which no two keys differ cost
+/// nothing.
+void scree_sort(scree_sort_buffers *buffers, int64_t num_items, int first_bit);
 void scree_sort_destroy(scree_sort_buffers *buffers);
 
 #endif

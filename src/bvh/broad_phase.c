@@ -1,0 +1,259 @@
+/// \file broad_phase.c
+/// Order of a search: tree over the boxes, pairs of particles, pairs with walls, sort by (i, j), rows.
+#include "bvh/broad_phase.h"
+
+#include "bvh/bvh_launch.h"
+#include "core/buffer.h"
+#include "core/sort.h"
+
+#include <stdlib.h>
+
+enum
+{
+    BLOCK_PARTICLES = 64,  ///< that look for walls in one call
+    MAX_BRUTE_FORCE = 2000 ///< particles that are compared with all others when validating
+};
+
+struct scree_broad_phase_buffers
+{
+    scree_sort_buffers sort; ///< keys of pairs
+    int32_t *first_as_i;     ///< (max_bodies + 1)
+    int32_t *first_as_j;     ///< (max_bodies + 1)
+    int64_t max_pairs;
+    int64_t max_bodies;
+    int64_t num_bodies; ///< of the last search
+};
+
+void scree_broad_phase_destroy(scree_broad_phase *broad_phase)
+{
+    scree_lbvh_destroy(&broad_phase->tree);
+    if (broad_phase->buffers != NULL)
+    {
+        scree_sort_destroy(&broad_phase->buffers->sort);
+        free(broad_phase->buffers->first_as_i);
+        free(broad_phase->buffers->first_as_j);
+        free(broad_phase->buffers);
+    }
+    free(broad_phase->pairs);
+    free(broad_phase->row_begin);
+    free(broad_phase->row_pairs);
+    *broad_phase = (scree_broad_phase){0};
+}
+
+/// Room for arrays of one entry per body.
+static scree_status reserve_bodies(scree_broad_phase *broad_phase, int64_t num_bodies)
+{
+    struct scree_broad_phase_buffers *b = broad_phase->buffers;
+    if (num_bodies <= b->max_bodies && broad_phase->row_begin != NULL) return SCREE_OK;
+    const int64_t max_bodies = scree_buffer_grown(num_bodies);
+    int32_t *first_as_i = scree_buffer_alloc(max_bodies + 1, sizeof *first_as_i);
+    int32_t *first_as_j = scree_buffer_alloc(max_bodies + 1, sizeof *first_as_j);
+    int64_t *row_begin = scree_buffer_alloc(max_bodies + 1, sizeof *row_begin);
+    if (first_as_i == NULL || first_as_j == NULL || row_begin == NULL)
+    {
+        free(first_as_i);
+        free(first_as_j);
+        free(row_begin);
+        return SCREE_OUT_OF_MEMORY;
+    }
+    // the rows of the last search stay readable until this one is complete
+    for (int64_t body = 0; body <= b->num_bodies; ++body)
+        row_begin[body] = broad_phase->row_begin != NULL ? broad_phase->row_begin[body] : 0;
+    free(b->first_as_i);
+    free(b->first_as_j);
+    free(broad_phase->row_begin);
+    b->first_as_i = first_as_i;
+    b->first_as_j = first_as_j;
+    broad_phase->row_begin = row_begin;
+    b->max_bodies = max_bodies;
+    return SCREE_OK;
+}
+
+/// Room for arrays of one entry per pair. Called when the number is known and before anything is written.
+static scree_status reserve_pairs(scree_broad_phase *broad_phase, int64_t num_pairs)
+{
+    struct scree_broad_phase_buffers *b = broad_phase->buffers;
+    if (num_pairs <= b->max_pairs) return SCREE_OK;
+    const int64_t max_pairs = scree_buffer_grown(num_pairs);
+    scree_candidate_pair *pairs = scree_buffer_alloc(max_pairs, sizeof *pairs);
+    int32_t *row_pairs = scree_buffer_alloc(2 * max_pairs, sizeof *row_pairs);
+    if (pairs == NULL || row_pairs == NULL)
+    {
+        free(pairs);
+        free(row_pairs);
+        return SCREE_OUT_OF_MEMORY;
+    }
+    free(broad_phase->pairs);
+    free(broad_phase->row_pairs);
+    broad_phase->pairs = pairs;
+    broad_phase->row_pairs = row_pairs;
+    b->max_pairs = max_pairs;
+    return SCREE_OK;
+}
+
+static int32_t count_bits(int64_t number)
+{
+    int32_t num_bits = 1;
+    while (number >> num_bits != 0) ++num_bits;
+    return num_bits;
+}
+
+/// One try: appends the keys of all pairs to the list, as far as it has room; returns how many there are.
+static int64_t find_keys(scree_broad_phase *broad_phase, const scree_broad_phase_input *input)
+{
+    struct scree_broad_phase_buffers *b = broad_phase->buffers;
+    int64_t num_keys = 0;
+    const scree_pair_list list = {b->sort.keys, &num_keys, b->sort.max_items,
+                                  count_bits(input->num_particles + input->num_walls)};
+    scree_particle_pairs_find((scree_particle_pairs_args){broad_phase->tree.view, list});
+    const scree_wall_pairs_args wall_args = {input->centres,   input->radii,    input->walls, input->num_particles,
+                                             input->num_walls, BLOCK_PARTICLES, list};
+    if (input->num_walls > 0)
+        scree_wall_pairs_launch(wall_args, (input->num_particles + BLOCK_PARTICLES - 1) / BLOCK_PARTICLES);
+    return num_keys;
+}
+
+/// Sorted keys to pairs and rows.
+static void fill_pairs_and_rows(scree_broad_phase *broad_phase, int64_t num_pairs, int64_t num_bodies)
+{
+    struct scree_broad_phase_buffers *b = broad_phase->buffers;
+    scree_pair_rows_args args = {b->sort.keys,  b->sort.spare_keys,     broad_phase->pairs,     b->first_as_i,
+                                 b->first_as_j, broad_phase->row_begin, broad_phase->row_pairs, num_pairs,
+                                 num_bodies,    count_bits(num_bodies)};
+    if (num_pairs == 0)
+        for (int64_t body = 0; body <= num_bodies; ++body) args.first_as_i[body] = args.first_as_j[body] = 0;
+    scree_pair_unpack_launch(args, num_pairs);
+
+    // by second body; the pairs of one stay in order
+    uint64_t *keys = b->sort.keys;
+    b->sort.keys = b->sort.spare_keys;
+    b->sort.spare_keys = keys;
+    scree_sort(&b->sort, num_pairs, 32);
+    args.second_keys = b->sort.keys;
+    scree_pair_second_begin_launch(args, num_pairs);
+    scree_pair_row_begin_launch(args, num_bodies + 1);
+    scree_pair_rows_launch(args, num_pairs);
+    broad_phase->num_pairs = num_pairs;
+    b->num_bodies = num_bodies;
+}
+
+scree_status scree_broad_phase_find(scree_broad_phase *broad_phase, const scree_broad_phase_input *input)
+{
+    const int64_t num_bodies = input->num_particles + input->num_walls;
+    if (num_bodies >= INT32_MAX) return SCREE_TOO_MANY;
+    if (broad_phase->buffers == NULL) broad_phase->buffers = calloc(1, sizeof *broad_phase->buffers);
+    if (broad_phase->buffers == NULL) return SCREE_OUT_OF_MEMORY;
+    struct scree_broad_phase_buffers *b = broad_phase->buffers;
+    scree_status status = reserve_bodies(broad_phase, num_bodies);
+    if (status == SCREE_OK) status = scree_lbvh_build(&broad_phase->tree, input->boxes, input->num_particles);
+
+    // a list that was too short has still counted all pairs, so the second try has room
+    int64_t num_pairs = 0;
+    for (bool is_complete = false; !is_complete && status == SCREE_OK;)
+    {
+        num_pairs = find_keys(broad_phase, input);
+        is_complete = num_pairs <= b->sort.max_items;
+        if (num_pairs > INT32_MAX) status = SCREE_TOO_MANY;
+        else if (!is_complete) status = scree_sort_reserve(&b->sort, scree_buffer_grown(num_pairs), false);
+    }
+    if (status == SCREE_OK) status = reserve_pairs(broad_phase, num_pairs);
+    if (status != SCREE_OK) return status;
+    scree_sort(&b->sort, num_pairs, 0);
+    fill_pairs_and_rows(broad_phase, num_pairs, num_bodies);
+    return SCREE_OK;
+}
+
+/// Pairs in range, i < j, ascending and therefore unique.
+static bool check_order(const scree_broad_phase *broad_phase, const scree_broad_phase_input *input,
+                        scree_report *report)
+{
+    const int64_t num_bodies = input->num_particles + input->num_walls;
+    for (int64_t p = 0; p < broad_phase->num_pairs; ++p)
+    {
+        const scree_candidate_pair pair = broad_phase->pairs[p];
+        const bool is_pair = pair.i >= 0 && pair.i < pair.j && pair.i < input->num_particles && pair.j < num_bodies;
+        const scree_candidate_pair before = p > 0 ? broad_phase->pairs[p - 1] : (scree_candidate_pair){-1, -1};
+        const bool is_after = pair.i > before.i || (pair.i == before.i && pair.j > before.j);
+        if (is_pair && is_after) continue;
+        scree_report_add(report, "candidate pair %lld (%d, %d) %s", (long long)p, pair.i, pair.j,
+                         is_pair ? "is not after the one before it" : "is not a pair of a particle and a later body");
+        return false;
+    }
+    return true;
+}
+
+/// Each row ascends and holds pairs of its body alone; as many entries as two for each pair make them complete.
+static bool check_rows(const scree_broad_phase *broad_phase, int64_t num_bodies, scree_report *report)
+{
+    const int64_t *begin = broad_phase->row_begin;
+    if (begin[0] != 0 || begin[num_bodies] != 2 * broad_phase->num_pairs)
+    {
+        scree_report_add(report, "rows of candidate pairs: from %lld to %lld for %lld pairs", (long long)begin[0],
+                         (long long)begin[num_bodies], (long long)broad_phase->num_pairs);
+        return false;
+    }
+    for (int64_t body = 0; body < num_bodies; ++body)
+    {
+        bool is_valid = begin[body] <= begin[body + 1];
+        for (int64_t k = begin[body]; k < begin[body + 1] && is_valid; ++k)
+        {
+            const int64_t p = broad_phase->row_pairs[k], before = k > begin[body] ? broad_phase->row_pairs[k - 1] : -1;
+            is_valid = p > before && p < broad_phase->num_pairs &&
+                       (broad_phase->pairs[p].i == body || broad_phase->pairs[p].j == body);
+        }
+        if (is_valid) continue;
+        scree_report_add(report, "row of body %lld: not ascending, or with a pair of other bodies", (long long)body);
+        return false;
+    }
+    return true;
+}
+
+/// What the search should say of two bodies, without the tree's hierarchy.
+static bool are_candidates(const scree_broad_phase_input *input, int64_t i, int64_t j)
+{
+    if (j < input->num_particles) return scree_box_overlaps(input->boxes[i], input->boxes[j]);
+    const scree_broad_phase_wall *wall = input->walls + (j - input->num_particles);
+    if (!wall->is_present) return false;
+    scree_vec3 centre = input->centres[i];
+    const scree_real radius = scree_sphere_to_wall(&centre, input->radii[i], wall->pose);
+    for (int64_t k = 0; k < 2 * (int64_t)wall->tree.num_leaves - 1; ++k)
+    {
+        const scree_lbvh_node *node = wall->tree.nodes + k;
+        if (node->first_child < 0 && scree_box_distance_squared(node->box, centre) <= radius * radius) return true;
+    }
+    return false;
+}
+
+static bool check_against_all(const scree_broad_phase *broad_phase, const scree_broad_phase_input *input,
+                              scree_report *report)
+{
+    int64_t p = 0;
+    for (int64_t i = 0; i < input->num_particles; ++i)
+    {
+        for (int64_t j = i + 1; j < input->num_particles + input->num_walls; ++j)
+        {
+            const bool is_listed =
+                p < broad_phase->num_pairs && broad_phase->pairs[p].i == i && broad_phase->pairs[p].j == j;
+            p += is_listed;
+            if (is_listed == are_candidates(input, i, j)) continue;
+            scree_report_add(report, "candidate pair (%lld, %lld) is %s", (long long)i, (long long)j,
+                             is_listed ? "listed, but does not meet" : "missing");
+            return false;
+        }
+    }
+    return true;
+}
+
+bool scree_broad_phase_validate(const scree_broad_phase *broad_phase, const scree_broad_phase_input *input,
+                                scree_report *report)
+{
+    const int64_t num_bodies = input->num_particles + input->num_walls;
+    if (broad_phase->row_begin == NULL || broad_phase->buffers->num_bodies != num_bodies)
+    {
+        scree_report_add(report, "candidate pairs: not those of %lld particles and %lld walls",
+                         (long long)input->num_particles, (long long)input->num_walls);
+        return false;
+    }
+    return check_order(broad_phase, input, report) && check_rows(broad_phase, num_bodies, report) &&
+           (input->num_particles > MAX_BRUTE_FORCE || check_against_all(broad_phase, input, report));
+}

@@ -1,0 +1,188 @@
+/// \file broad_phase_kernel.h
+/// Search for candidate pairs: box against tree, sphere against the trees of walls, sorted keys to pairs and rows.
+/// Found pairs are appended to one list of keys in no particular order; sorting the keys, which are unique, gives the
+/// same list however the work was shared.
+#ifndef SCREE_BROAD_PHASE_KERNEL_H
+#define SCREE_BROAD_PHASE_KERNEL_H
+
+#include "bvh/broad_phase.h"
+#include "core/atomic_kernel.h"
+
+/// Keys that a call collects before it takes a place in the list for all of them.
+#define SCREE_PAIR_BATCH 32
+
+/// Where found pairs go. Key of (i, j), i < j: i << id_bits | j.
+typedef struct scree_pair_list
+{
+    uint64_t *keys;    ///< (max_keys)
+    int64_t *num_keys; ///< counts on beyond max_keys, so that the next try has room
+    int64_t max_keys;
+    int32_t id_bits; ///< bits that hold every id, at most 31
+} scree_pair_list;
+
+/// Keys on their way to the list.
+typedef struct scree_pair_batch
+{
+    uint64_t keys[SCREE_PAIR_BATCH];
+    int32_t num_keys;
+} scree_pair_batch;
+
+SCREE_FN uint64_t scree_pair_key(scree_pair_list list, int32_t a, int32_t b)
+{
+    return a < b ? (uint64_t)a << list.id_bits | (uint64_t)b : (uint64_t)b << list.id_bits | (uint64_t)a;
+}
+
+/// Appends keys; those beyond the end of the list are only counted.
+SCREE_FN void scree_pair_list_append(scree_pair_list list, const uint64_t *keys, int32_t num_keys)
+{
+    if (num_keys == 0) return;
+    const int64_t begin = scree_atomic_add_int64(list.num_keys, num_keys);
+    for (int32_t k = 0; k < num_keys && begin + k < list.max_keys; ++k) list.keys[begin + k] = keys[k];
+}
+
+SCREE_FN void scree_pair_batch_add(scree_pair_batch *batch, scree_pair_list list, int32_t a, int32_t b)
+{
+    if (batch->num_keys == SCREE_PAIR_BATCH)
+    {
+        scree_pair_list_append(list, batch->keys, batch->num_keys);
+        batch->num_keys = 0;
+    }
+    batch->keys[batch->num_keys++] = scree_pair_key(list, a, b);
+}
+
+/// Pairs of particles.
+typedef struct scree_particle_pairs_args
+{
+    scree_lbvh_view tree;
+    scree_pair_list list;
+} scree_particle_pairs_args;
+
+/// Half traversal for node k: a leaf looks for overlaps among the leaves after it, so each pair is met once.
+/// Prokopenko & Lebrun-Grandie (2024). Plain version; on the CPU a faster one stands in for it, see
+/// broad_phase_cpu.c.
+SCREE_FN void scree_particle_pairs_at(scree_particle_pairs_args a, int64_t k)
+{
+    const scree_lbvh_node node = a.tree.nodes[k];
+    if (node.first_child >= 0) return;
+    scree_pair_batch batch;
+    batch.num_keys = 0;
+    int32_t next = node.escape;
+    for (;;)
+    {
+        const int32_t other = scree_lbvh_next_overlap(a.tree, node.box, next, &next);
+        if (other < 0) break;
+        scree_pair_batch_add(&batch, a.list, -1 - node.first_child, other);
+    }
+    scree_pair_list_append(a.list, batch.keys, batch.num_keys);
+}
+
+/// Pairs of a particle and a wall.
+typedef struct scree_wall_pairs_args
+{
+    const scree_vec3 *centres;           ///< (num_particles)
+    const scree_real *radii;             ///< (num_particles)
+    const scree_broad_phase_wall *walls; ///< (num_walls)
+    int64_t num_particles;
+    int64_t num_walls;
+    int64_t block_particles; ///< particles per call
+    scree_pair_list list;
+} scree_wall_pairs_args;
+
+/// A sphere in the frame of a wall, with room for all rounding on the way. With t = centre - position, the rotation
+/// matrix is wrong by at most 8 eps per entry for a quaternion that is a unit to 2 eps, its product with t by another
+/// 3 eps |t|_1, the difference t and the quotient by eps each: 16 eps |t|_1 bounds each coordinate's error, and so
+/// 32 eps |t|_1 the error of the distance. Another 16 eps of the radius cover its quotient and the squares and sums
+/// of the comparison of distances.
+SCREE_FN scree_real scree_sphere_to_wall(scree_vec3 *centre, scree_real radius, scree_pose pose)
+{
+    const scree_vec3 t = scree_vec3_sub(*centre, pose.position);
+    const scree_real length = scree_abs(t.x) + scree_abs(t.y) + scree_abs(t.z);
+    const scree_vec3 local = scree_mat3_apply_transposed(scree_mat3_from_quat(pose.orientation), t);
+    *centre = scree_vec3_make(local.x / pose.scale, local.y / pose.scale, local.z / pose.scale);
+    return (radius * (1 + 16 * SCREE_REAL_EPSILON) + 32 * SCREE_REAL_EPSILON * length) / pose.scale;
+}
+
+/// Walls met by the spheres of one block of particles.
+SCREE_FN void scree_wall_pairs_at(scree_wall_pairs_args a, int64_t block)
+{
+    const int64_t begin = block * a.block_particles;
+    const int64_t end = begin + a.block_particles < a.num_particles ? begin + a.block_particles : a.num_particles;
+    scree_pair_batch batch;
+    batch.num_keys = 0;
+    for (int64_t w = 0; w < a.num_walls; ++w)
+    {
+        if (!a.walls[w].is_present) continue;
+        for (int64_t i = begin; i < end; ++i)
+        {
+            scree_vec3 centre = a.centres[i];
+            const scree_real radius = scree_sphere_to_wall(&centre, a.radii[i], a.walls[w].pose);
+            if (scree_lbvh_meets_sphere(a.walls[w].tree, centre, radius))
+                scree_pair_batch_add(&batch, a.list, (int32_t)i, (int32_t)(a.num_particles + w));
+        }
+    }
+    scree_pair_list_append(a.list, batch.keys, batch.num_keys);
+}
+
+/// Sorted keys to pairs and rows. A body's row holds the pairs in which it is the second body, then those in which it
+/// is the first: the former have a smaller first body, so they come earlier in the list and the row ascends.
+typedef struct scree_pair_rows_args
+{
+    const uint64_t *keys;        ///< (num_pairs) sorted
+    uint64_t *second_keys;       ///< (num_pairs) j << 32 | pair; sorted by j between the first and the second kernel
+    scree_candidate_pair *pairs; ///< (num_pairs)
+    int32_t *first_as_i;         ///< (num_bodies + 1) pairs before the first one with i >= body
+    int32_t *first_as_j;         ///< (num_bodies + 1) second keys before the first one with j >= body
+    int64_t *row_begin;          ///< (num_bodies + 1)
+    int32_t *row_pairs;          ///< (2 num_pairs)
+    int64_t num_pairs;
+    int64_t num_bodies;
+    int32_t id_bits;
+} scree_pair_rows_args;
+
+typedef scree_pair_rows_args scree_pair_unpack_args;
+typedef scree_pair_rows_args scree_pair_second_begin_args;
+typedef scree_pair_rows_args scree_pair_row_begin_args;
+
+/// Entry p of a sorted list has body `id`, the entry before it `previous` (-1 for the first one): p is the beginning
+/// of all bodies above `previous` up to `id`. The last entry also begins what follows.
+SCREE_FN void scree_pair_mark_begins(int32_t *first, int64_t p, int64_t num_pairs, int64_t previous, int64_t id,
+                                     int64_t num_bodies)
+{
+    for (int64_t body = previous + 1; body <= id; ++body) first[body] = (int32_t)p;
+    if (p + 1 < num_pairs) return;
+    for (int64_t body = id + 1; body <= num_bodies; ++body) first[body] = (int32_t)num_pairs;
+}
+
+/// Pair p from its key.
+SCREE_FN void scree_pair_unpack_at(scree_pair_unpack_args a, int64_t p)
+{
+    const uint64_t key = a.keys[p], mask = ((uint64_t)1 << a.id_bits) - 1;
+    a.pairs[p].i = (int32_t)(key >> a.id_bits);
+    a.pairs[p].j = (int32_t)(key & mask);
+    a.second_keys[p] = (key & mask) << 32 | (uint64_t)p;
+    const int64_t previous = p > 0 ? (int64_t)(a.keys[p - 1] >> a.id_bits) : -1;
+    scree_pair_mark_begins(a.first_as_i, p, a.num_pairs, previous, (int64_t)(key >> a.id_bits), a.num_bodies);
+}
+
+/// Where the bodies begin in the sorted second keys; entry q.
+SCREE_FN void scree_pair_second_begin_at(scree_pair_second_begin_args a, int64_t q)
+{
+    const int64_t previous = q > 0 ? (int64_t)(a.second_keys[q - 1] >> 32) : -1;
+    scree_pair_mark_begins(a.first_as_j, q, a.num_pairs, previous, (int64_t)(a.second_keys[q] >> 32), a.num_bodies);
+}
+
+/// Where the row of a body begins; one more at the end.
+SCREE_FN void scree_pair_row_begin_at(scree_pair_row_begin_args a, int64_t body)
+{
+    a.row_begin[body] = (int64_t)a.first_as_i[body] + a.first_as_j[body];
+}
+
+/// Second key p to the row of its second body, pair p to the row of its first body.
+SCREE_FN void scree_pair_rows_at(scree_pair_rows_args a, int64_t p)
+{
+    const int64_t j = (int64_t)(a.second_keys[p] >> 32), i = a.pairs[p].i;
+    a.row_pairs[a.row_begin[j] + (p - a.first_as_j[j])] = (int32_t)(a.second_keys[p] & 0xffffffffu);
+    a.row_pairs[a.row_begin[i + 1] - (a.first_as_i[i + 1] - p)] = (int32_t)p;
+}
+
+#endif

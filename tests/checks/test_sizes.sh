@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Files have at most 800 lines, functions 80, parameter lists five; nothing is left behind to be done.
+# Files have at most 800 lines, functions 80, parameter lists eight (five are aimed at); nothing is left to be done.
 . "$(dirname "$0")/common.sh"
 mapfile -t files < <(sources '*.c' '*.h' '*.cu' '*.cuh' '*.cpp' '*.py')
 mapfile -t code < <(sources '*.c' '*.h' '*.cu' '*.cuh' '*.cpp')
@@ -16,8 +16,8 @@ ctags --languages=C,C++,CUDA --langmap=CUDA:+.cuh --c-kinds=f --c++-kinds=f --cu
     }
     ++num
     if (last - first + 1 > 80) print $2 ":" first ": " $1 "() has " last - first + 1 " lines; 80 are allowed"
-    if ($2 ~ /^(src|include)\// && gsub(/,/, ",", signature) > 4 && signature !~ /\.\.\./)
-        print $2 ":" first ": " $1 "() has more than five parameters; give it a struct"
+    if ($2 ~ /^(src|include)\// && gsub(/,/, ",", signature) > 7 && signature !~ /\.\.\./)
+        print $2 ":" first ": " $1 "() has more than eight parameters; give it a struct"
 } END { print num > "'"$scratch"'/num" }' >>"$scratch/faults"
 grep -nE '\b(TODO|FIXME|XXX|HACK)\b' "${files[@]}" | sed 's/$/ : left to be done/' >>"$scratch/faults"
 finish "sizes of functions" "$(cat "$scratch/num")" "$scratch/faults"

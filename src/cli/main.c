@@ -55,15 +55,33 @@ static const program_command *find_command(const char *name)
     return NULL;
 }
 
+/// Tells a word that is not known with the nearest one that is: a command, or one of the others.
 static int unknown(const char *what, const char *name)
 {
-    const char *names[NUM_COMMANDS];
+    static const char *const options[] = {"--help", "--version"};
+    const char *names[NUM_COMMANDS + 1];
     for (int k = 0; k < NUM_COMMANDS; ++k) names[k] = commands[k].name;
-    const char *nearest = scree_nearest_name(name, names, NUM_COMMANDS);
+    names[NUM_COMMANDS] = "scene"; // a topic, not a command
+    const bool is_topic = strcmp(what, "topic") == 0;
+    const char *nearest = strcmp(what, "option") == 0 ? scree_nearest_name(name, options, 2)
+                                                      : scree_nearest_name(name, names, NUM_COMMANDS + is_topic);
     fprintf(stderr, "scree: unknown %s \"%.100s\"; ", what, name);
     if (nearest != NULL) fprintf(stderr, "did you mean \"%s\"?\n", nearest);
     else fprintf(stderr, "see scree --help\n");
     return SCREE_EXIT_USAGE;
+}
+
+/// What was printed counts only once it is written.
+static int finish(void)
+{
+    if (fflush(stdout) == 0) return SCREE_EXIT_DONE;
+    fprintf(stderr, "scree: standard output could not be written\n");
+    return SCREE_EXIT_FAILED;
+}
+
+static bool is_version(const char *argument)
+{
+    return strcmp(argument, "--version") == 0 || strcmp(argument, "-V") == 0;
 }
 
 /// scree --help [TOPIC]
@@ -78,9 +96,7 @@ static int print_help(const char *topic)
         char *arguments[] = {(char *)topic, help, NULL};
         return command != NULL ? command->run(2, arguments) : unknown("topic", topic);
     }
-    if (fflush(stdout) == 0) return SCREE_EXIT_DONE;
-    fprintf(stderr, "scree: standard output could not be written\n");
-    return SCREE_EXIT_FAILED;
+    return finish();
 }
 
 int main(int argc, char **argv)
@@ -93,11 +109,11 @@ int main(int argc, char **argv)
     const char *name = argv[1];
     if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0 || strcmp(name, "help") == 0)
         return print_help(argc > 2 ? argv[2] : NULL);
-    if (strcmp(name, "--version") == 0 || strcmp(name, "-V") == 0)
+    const program_command *command = find_command(name);
+    if (is_version(name) || (command != NULL && argc == 3 && is_version(argv[2])))
     {
         printf("scree %s\n", SCREE_VERSION);
-        return SCREE_EXIT_DONE;
+        return finish();
     }
-    const program_command *command = find_command(name);
     return command != NULL ? command->run(argc - 1, argv + 1) : unknown(name[0] == '-' ? "option" : "command", name);
 }

@@ -171,6 +171,17 @@ static void describe_range(const scree_scene_section *section, int key, char *te
     }
 }
 
+/// True if the section cannot be left out: one of its keys has no default.
+static bool must_be_given(const scree_scene_section *section, int key)
+{
+    if (section->keys[key].default_text == NULL) return true;
+    const scree_scene_section *inner = section->keys[key].section;
+    const bool is_section = section->fields[key].value.type == CYAML_MAPPING;
+    for (int k = 0; is_section && k < inner->num_keys; ++k)
+        if (must_be_given(inner, k)) return true;
+    return false;
+}
+
 static void print_section(FILE *out, const scree_scene_section *section)
 {
     fprintf(out, "\n## %s\n\n%s\n\n| key | unit | default | range | meaning |\n|---|---|---|---|---|\n", section->title,
@@ -178,33 +189,51 @@ static void print_section(FILE *out, const scree_scene_section *section)
     for (int k = 0; k < section->num_keys; ++k)
     {
         const scree_scene_key *key = section->keys + k;
+        const bool is_free = !must_be_given(section, k);
         char range[400];
         describe_range(section, k, range, sizeof range);
         fprintf(out, "| `%s` | %s | %s%s%s | %s | %s |\n", key->name, key->unit != NULL ? key->unit : "",
-                key->default_text != NULL ? "`" : "", key->default_text != NULL ? key->default_text : "must be given",
-                key->default_text != NULL ? "`" : "", range, key->meaning);
+                is_free ? "`" : "", is_free ? key->default_text : "must be given", is_free ? "`" : "", range,
+                key->meaning);
     }
     for (int k = 0; k < section->num_keys; ++k)
         if (section->keys[k].section != NULL) print_section(out, section->keys[k].section);
 }
 
+static const char introduction[] =
+    "# Scenes\n\n"
+    "A scene is a YAML file that says everything a run is made from, in SI units. This page is made from the tables\n"
+    "that the reader checks scenes by: `scree --help scene` prints it. A cube that falls on a plate:\n\n"
+    "```yaml\n"
+    "name: drop\n"
+    "time: {end: 1, step: 1e-4}\n"
+    "materials:\n"
+    "  - {name: stone, density: 2500, youngs_modulus: 1e7, poisson_ratio: 0.25}\n"
+    "contact_laws:\n"
+    "  - {materials: [stone, stone], friction_coefficient: 0.5, restitution_coefficient: 0.3}\n"
+    "shapes:\n"
+    "  - {name: cube, source: box, size: 0.1}\n"
+    "  - {name: plate, source: box, size: [1, 1, 0.1]}\n"
+    "particles:\n"
+    "  - {name: cubes, shape: cube, material: stone, bodies: [{position: [0, 0, 0.3]}]}\n"
+    "walls:\n"
+    "  - {name: floor, shape: plate, material: stone, position: [0, 0, -0.05]}\n"
+    "```\n\n"
+    "- Keys that are left out take their default. `scree check --print SCENE` shows a scene with all of them filled\n"
+    "  in; a run keeps that text in its folder.\n"
+    "- Numbers are written plainly, `0.01` or `1e-5`, without units. A range `[a, b]` contains its ends. `auto` and\n"
+    "  `never` stand where the range names them.\n"
+    "- All faults of a file are told at once, each with line, key, value, what is allowed and what to do. A name\n"
+    "  that is not known is answered with the nearest one.\n"
+    "- `--set PATH=VALUE` replaces a value, or adds one, before the scene is checked: `time.end=2`,\n"
+    "  `particles.cubes.count=500`, `gravity.2=-1.62`, `walls=[]`. Items of lists are addressed by their number\n"
+    "  from 0 or by their name; values are YAML.\n"
+    "- Aliases (`&a`, `*a`) work, merge keys (`<<`) do not. A file has up to 16 MB.\n"
+    "- Mesh files are looked for from the folder of the scene.\n";
+
 void scree_scene_print_keys(void *stream)
 {
     FILE *out = stream;
-    fputs("# Scenes\n\n"
-          "A scene is a YAML file that says everything a run is made from, in SI units. The page is made from the "
-          "tables\nthat the reader checks scenes by: `scree --help scene` prints it.\n\n"
-          "- Keys that are left out take their default. `scree check --print SCENE` shows a scene with all of them "
-          "filled in;\n  a run keeps that text in its folder.\n"
-          "- Numbers are written plainly, `0.01`, `1e-5`, without units; a range `[a, b]` contains its ends. `auto` "
-          "and `never`\n  stand where the range names them.\n"
-          "- All faults of a file are told at once, each with line, key, value, what is allowed and what to do. A "
-          "name that is\n  not known is answered with the nearest one.\n"
-          "- `--set PATH=VALUE` replaces a value, or adds one, before the scene is checked: `--set time.end=2`, `--set "
-          "\n  particles.fill.count=500`, `--set gravity.2=-1.62`, `--set walls=[]`. Items of lists are addressed by "
-          "their\n  number from 0 or by their name; values are YAML.\n"
-          "- Aliases (`&a`, `*a`) work, merge keys (`<<`) do not. A file has up to 16 MB.\n"
-          "- Mesh files are looked for from the folder of the scene.\n",
-          out);
+    fputs(introduction, out);
     print_section(out, scree_scene_root());
 }

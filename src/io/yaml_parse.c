@@ -10,7 +10,7 @@
 /// Scenes are shallow; what is deeper is an alias inside its own anchor, or no scene.
 #define MAX_DEPTH 32
 /// Aliases of lists of aliases can ask for any number of values.
-#define MAX_NODES 20000000
+#define MAX_NODES 5000000
 
 typedef struct tree_reader
 {
@@ -39,6 +39,7 @@ static const char *remedy_for(const char *problem, bool is_after_tab)
         {"found unexpected end of stream", "close the quotes"},
         {"did not find expected <document start>", "indent all keys of the scene alike"},
         {"control characters are not allowed", "a scene is a plain text in UTF-8"},
+        {"tab character", "indent with spaces, not with tabs"},
         {"UTF-8", "a scene is a plain text in UTF-8"},
         {"UTF-16", "a scene is a plain text in UTF-8"},
     };

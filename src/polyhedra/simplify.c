@@ -10,6 +10,7 @@
 #include <float.h>
 #include <meshoptimizer.h>
 #include <stdlib.h>
+#include <string.h>
 
 /// One way to fewer triangles: the number to end with, relative to the wanted one, and the share of it to stop at
 /// once before.
@@ -91,8 +92,12 @@ static void run_attempt(simplifier *s, int32_t num_triangles, double detour)
                                NULL);
         from = s->between;
     }
-    s->num_indices = meshopt_simplify(s->indices, from, num, s->positions, num_vertices, stride,
-                                      3 * (size_t)num_triangles, FLT_MAX, 0, NULL);
+    // a detour may end below the target, where meshoptimizer must not be asked
+    s->num_indices = num;
+    if (num > 3 * (size_t)num_triangles)
+        s->num_indices = meshopt_simplify(s->indices, from, num, s->positions, num_vertices, stride,
+                                          3 * (size_t)num_triangles, FLT_MAX, 0, NULL);
+    else memcpy(s->indices, from, num * sizeof *from);
 }
 
 /// Scales the mesh about its centroid.

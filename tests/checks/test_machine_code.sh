@@ -9,8 +9,10 @@ fused='\bvf(n?m(add|sub)|maddsub|msubadd)[0-9]*[sp][sd]\b'
 : >"$scratch/faults"
 
 objdump -d --no-show-raw-insn "$build/libscree.a" >"$scratch/disassembly"
-grep -q mulsd "$scratch/disassembly" || { echo "the disassembly holds no multiplication at all"; exit 1; }
-grep -oE "$fused" "$scratch/disassembly" | sort | uniq -c | sed 's/$/ in the release objects/' >>"$scratch/faults"
+grep mulsd "$scratch/disassembly" >/dev/null || { echo "the disassembly holds no multiplication at all"; exit 1; }
+if ! grep -e '-march=native' "$build/compile_commands.json" >/dev/null; then # there fma() itself is such an instruction
+    grep -oE "$fused" "$scratch/disassembly" | sort | uniq -c | sed 's/$/ in the release objects/' >>"$scratch/faults"
+fi
 
 # the build's own commands, without their output: "source TAB command"
 python3 - "$build/compile_commands.json" >"$scratch/commands" <<'PYTHON'

@@ -23,6 +23,8 @@ static bool reserve_pieces(scree_overlap_body *body, int32_t max)
     body->max_edges = 0;
     bool is_done = renew(&body->points, max, sizeof *body->points);
     is_done = renew(&body->vertex_id, max, sizeof *body->vertex_id) && is_done;
+    is_done = renew(&body->outcode, max, sizeof *body->outcode) && is_done;
+    is_done = renew(&body->kept, max, sizeof *body->kept) && is_done;
     is_done = renew(&body->inside, max, sizeof *body->inside) && is_done;
     is_done = renew(&body->triangles, max, sizeof *body->triangles) && is_done;
     is_done = renew(&body->triangle_boxes, max, sizeof *body->triangle_boxes) && is_done;
@@ -104,7 +106,9 @@ void scree_overlap_workspace_destroy(scree_overlap_workspace *workspace)
         scree_overlap_body *body = slice->body + side;
         free(body->points);
         free(body->vertex_id);
+        free(body->outcode);
         free(body->inside);
+        free(body->kept);
         free(body->triangles);
         free(body->triangle_boxes);
         free(body->edges);

@@ -96,11 +96,47 @@ SCREE_FN bool scree_overlap_set_up(const scree_overlap_pair *pair, scree_overlap
     return true;
 }
 
-/// Largest direction . v over a body in the working frame.
-SCREE_FN scree_real scree_overlap_support(const scree_posed_shape *posed, scree_vec3 direction)
+/// How far a body reaches along a direction; loads its vertices unless it uses its tree.
+SCREE_FN scree_real scree_overlap_load(scree_overlap_body *body, const scree_posed_shape *posed, scree_vec3 direction)
 {
+    if (!scree_filter_uses_tree(posed->shape)) return scree_filter_load_all(body, posed, direction);
     const scree_vec3 turned = scree_mat3_apply_transposed(posed->rows, direction);
     return scree_support(posed->shape, turned) + scree_vec3_dot(direction, posed->offset);
+}
+
+/// Half-spaces: how far A reaches along the direction, and how far B reaches back. False if they are apart.
+SCREE_FN bool scree_overlap_half_spaces(scree_overlap_slice *slice, const scree_overlap_setup *setup,
+                                        scree_filter_region *region)
+{
+    const scree_vec3 d = setup->direction;
+    const scree_real size = scree_max(scree_box_reach(setup->box[0]), scree_box_reach(setup->box[1]));
+    const scree_real rounding = 64 * SCREE_REAL_EPSILON * size * (scree_abs(d.x) + scree_abs(d.y) + scree_abs(d.z));
+    region[0].direction = scree_vec3_negate(d);
+    region[0].dropping = SCREE_OUTSIDE_A;
+    region[1].direction = d;
+    region[1].dropping = SCREE_OUTSIDE_B;
+    for (int32_t side = 0; side < 2; ++side)
+    {
+        const int32_t other = 1 - side;
+        const scree_real reach = scree_overlap_load(slice->body + other, setup->posed + other, region[side].direction);
+        region[side].reach = reach + rounding;
+    }
+    return region[0].reach + region[1].reach >= 0;
+}
+
+/// Keeps the triangles of one body that reach into the region. False: none, or slice->lack is set.
+SCREE_FN bool scree_overlap_keep(scree_overlap_slice *slice, int32_t side, const scree_posed_shape *posed,
+                                 const scree_filter_region *region)
+{
+    scree_overlap_body *body = slice->body + side;
+    if (!scree_filter_uses_tree(posed->shape)) scree_filter_all(body, posed->shape, region);
+    else if (!scree_filter_tree(body, posed, region))
+    {
+        slice->lack = SCREE_LACK_PIECES;
+        return false;
+    }
+    scree_filter_kept_box(body);
+    return body->num_triangles > 0;
 }
 
 /// Kept triangles of both. False: none of one body, or slice->lack is set.
@@ -108,50 +144,44 @@ SCREE_FN bool scree_overlap_filter(scree_overlap_slice *slice, const scree_overl
 {
     for (int32_t side = 0; side < 2; ++side)
         if (!scree_filter_has_room(slice, side, setup->posed[side].shape)) return false;
-
-    // half-spaces: how far A reaches along the direction, and how far B reaches back
-    const scree_vec3 d = setup->direction;
-    const scree_real size = scree_max(scree_box_reach(setup->box[0]), scree_box_reach(setup->box[1]));
-    const scree_real rounding = 64 * SCREE_REAL_EPSILON * size * (scree_abs(d.x) + scree_abs(d.y) + scree_abs(d.z));
     scree_filter_region region[2];
-    region[0].direction = scree_vec3_negate(d);
-    region[1].direction = d;
+    if (!scree_overlap_half_spaces(slice, setup, region)) return false;
+
+    // B against A's box, A against what was kept of B, and B again against what was kept of A
+    region[1].box = setup->box[0];
+    if (!scree_overlap_keep(slice, 1, setup->posed + 1, region + 1)) return false;
+    region[0].box = slice->body[1].box;
+    if (!scree_overlap_keep(slice, 0, setup->posed, region)) return false;
+    region[1].box = slice->body[0].box;
+    scree_filter_again(slice->body + 1, region + 1);
+    if (slice->body[1].num_triangles == 0) return false;
+    scree_filter_kept_box(slice->body + 1);
+    return true;
+}
+
+/// Triangles and edges ready for the tests. False if there are too many.
+SCREE_FN bool scree_overlap_prepare(scree_overlap_slice *slice, const scree_overlap_pair *pair)
+{
     for (int32_t side = 0; side < 2; ++side)
     {
-        const scree_real reach = scree_overlap_support(setup->posed + 1 - side, region[side].direction);
-        region[side].reach = reach + rounding;
-        region[side].box = setup->box[1 - side];
+        scree_filter_finish(slice->body + side);
+        if (scree_overlap_make_edges(slice->body + side, pair->shape[side])) continue;
+        slice->lack = SCREE_LACK_PIECES;
+        return false;
     }
-    if (region[1].reach + region[0].reach < 0) return false;
-
-    // columns: A needs what lies above B's bottom, B what lies below A's top
-    region[0].box.upper.z = SCREE_REAL_MAX;
-    region[1].box.lower.z = -SCREE_REAL_MAX;
-    for (int32_t side = 1; side >= 0; --side)
-    {
-        if (!scree_filter_uses_tree(setup->posed[side].shape))
-            scree_filter_load_all(slice->body + side, setup->posed + side);
-        if (!scree_filter_run(slice, side, setup->posed + side, region + side)) return false;
-        if (slice->body[side].num_triangles == 0) return false;
-        if (side == 0) break;
-        region[0].box = scree_filter_kept_box(slice->body + 1);
-        region[0].box.upper.z = SCREE_REAL_MAX;
-    }
-    scree_box box = scree_filter_kept_box(slice->body);
-    box.lower.z = -SCREE_REAL_MAX;
-    scree_filter_shrink(slice->body + 1, box);
-    slice->extent = scree_max(scree_box_reach(scree_filter_kept_box(slice->body)),
-                              scree_box_reach(scree_filter_kept_box(slice->body + 1)));
-    return slice->body[1].num_triangles > 0;
+    return true;
 }
 
 /// Crossings and inside counts. False if there are too many.
 SCREE_FN bool scree_overlap_collect(scree_overlap_slice *slice, scree_overlap_scheme scheme)
 {
+    const scree_real size = scree_max(scree_box_reach(slice->body[0].box), scree_box_reach(slice->body[1].box));
+    slice->sign_tolerance = scheme == SCREE_OVERLAP_FILTERED ? SCREE_SIGN_MARGIN * SCREE_REAL_EPSILON * size : 0;
     slice->num_crossings = 0;
     for (int32_t side = 0; side < 2; ++side)
     {
-        if (scree_overlap_find_crossings(slice, side, scheme)) continue;
+        scree_overlap_find_inside(slice, side);
+        if (scree_overlap_find_crossings(slice, side)) continue;
         slice->lack = SCREE_LACK_CROSSINGS;
         return false;
     }
@@ -227,18 +257,11 @@ SCREE_FN scree_overlap_result scree_overlap_pair_compute(const scree_overlap_pai
         const bool is_full = slice->lack != SCREE_LACK_NOTHING;
         return scree_overlap_nothing(is_full ? SCREE_OVERLAP_WORKSPACE_FULL : SCREE_OVERLAP_NONE);
     }
-    for (int32_t side = 0; side < 2; ++side)
-    {
-        scree_filter_finish_triangles(slice->body + side);
-        if (scree_overlap_make_edges(slice->body + side, pair->shape[side])) continue;
-        slice->lack = SCREE_LACK_PIECES;
-        return scree_overlap_nothing(SCREE_OVERLAP_WORKSPACE_FULL);
-    }
+    if (!scree_overlap_prepare(slice, pair)) return scree_overlap_nothing(SCREE_OVERLAP_WORKSPACE_FULL);
 
     scree_overlap_sums sums;
     scree_overlap_scheme scheme = options->scheme;
     bool used_fallback = false;
-    for (int32_t side = 0; side < 2; ++side) scree_overlap_find_inside(slice, side);
     for (;;)
     {
         if (!scree_overlap_collect(slice, scheme)) return scree_overlap_nothing(SCREE_OVERLAP_WORKSPACE_FULL);

@@ -5,15 +5,14 @@
 #define SCREE_OVERLAP_PARTS_H
 
 #include "contact/overlap.h"
+#include "contact/overlap_signs_kernel.h"
 
 /// A triangle that can take part. Its corners are vertices of the same body.
 typedef struct scree_overlap_triangle
 {
+    scree_face face;
     int32_t v[3];
     int32_t id;          ///< in the shape
-    int32_t reversed;    ///< bit k: side k, from v[k] to v[k + 1], runs from the higher vertex id to the lower
-    scree_real size;     ///< bound from above on the length of its sides
-    scree_vec3 normal;   ///< outward, length twice the area
     scree_vec3 foot;     ///< of the contact's middle on the plane, relative to the middle; once has_foot
     scree_vec3 boundary; ///< sum of p x q over the boundary of the part inside the other body: twice its area vector
     bool has_foot;
@@ -22,7 +21,8 @@ typedef struct scree_overlap_triangle
 /// An edge of which both triangles are kept; no other can cross anything or end inside.
 typedef struct scree_overlap_edge
 {
-    int32_t v[2];    ///< lower vertex id first: every interpolation runs this way
+    scree_line line; ///< lower vertex id first: every interpolation runs this way
+    int32_t v[2];
     int32_t left;    ///< triangle in which the edge runs v[0] to v[1]
     int32_t right;   ///< the other one
     scree_real size; ///< bound from above on its length
@@ -30,21 +30,34 @@ typedef struct scree_overlap_edge
     bool has_foot;
 } scree_overlap_edge;
 
+/// A triangle that passed the filter.
+typedef struct scree_kept_triangle
+{
+    int32_t v[3]; ///< among the body's vertices here
+    int32_t id;   ///< in the shape
+} scree_kept_triangle;
+
 /// Kept pieces of one body.
 typedef struct scree_overlap_body
 {
     scree_vec3 *points;                ///< (max_vertices)
     int32_t *vertex_id;                ///< (max_vertices) in the shape
+    int32_t *outcode;                  ///< (max_vertices) sides of the region on which the vertex is outside
     int32_t *inside;                   ///< (max_vertices) how often the vertex lies inside the other body: 0 or 1
-    scree_overlap_triangle *triangles; ///< (max_triangles)
+    scree_kept_triangle *kept;         ///< (max_triangles)
+    scree_overlap_triangle *triangles; ///< (max_triangles) the same, those near the other body first
     scree_box *triangle_boxes;         ///< (max_triangles)
-    scree_overlap_edge *edges;         ///< (max_edges)
+    scree_overlap_edge *edges;         ///< (max_edges) those between two triangles near the other body first
     scree_box *edge_boxes;             ///< (max_edges)
     int32_t *vertex_slot;              ///< (max_shape_vertices) place of a kept vertex of the shape, else anything
     int32_t *triangle_slot;            ///< (max_shape_triangles) the same for triangles
+    scree_box box;                     ///< of the kept triangles
     int32_t num_vertices, max_vertices;
     int32_t num_triangles, max_triangles;
+    int32_t num_near_triangles; ///< can meet triangles of the other body; the rest are only for the rays
     int32_t num_edges, max_edges;
+    int32_t num_near_edges;
+    int32_t num_inside; ///< vertices inside the other body
     int32_t max_shape_vertices, max_shape_triangles;
 } scree_overlap_body;
 
@@ -87,7 +100,7 @@ typedef struct scree_overlap_slice
     int32_t num_segments;
     int32_t max_table; ///< a power of two, at least 4 max_crossings
     scree_overlap_lack lack;
-    scree_real extent; ///< largest coordinate in magnitude of the kept vertices
+    scree_real sign_tolerance; ///< 64 eps L, L the largest coordinate of a kept vertex; 0: hierarchy throughout
 } scree_overlap_slice;
 
 #endif

@@ -19,14 +19,6 @@ typedef enum scree_sign_verdict
     SCREE_SIGN_UNSURE = 2
 } scree_sign_verdict;
 
-/// A triangle for the signs: outward normal of twice its area and a bound on its sides.
-typedef struct scree_signed_face
-{
-    scree_face face;
-    scree_vec3 normal;
-    scree_real size;
-} scree_signed_face;
-
 /// Six times the volume of the tetrahedron of a line and side k of the face: > 0 for all three sides if the line goes
 /// against the normal through the face.
 SCREE_FN scree_real scree_line_orientation(const scree_line *line, scree_vec3 direction, const scree_face *face,
@@ -38,13 +30,13 @@ SCREE_FN scree_real scree_line_orientation(const scree_line *line, scree_vec3 di
 }
 
 /// Does the edge, of length at most `size`, pass through the triangle? `tolerance` is 64 eps L. Sets the point if so.
-SCREE_FN scree_sign_verdict scree_edge_sign(const scree_line *edge, scree_real size, const scree_signed_face *g,
+SCREE_FN scree_sign_verdict scree_edge_sign(const scree_line *edge, scree_real size, const scree_face *g,
                                             scree_real tolerance, scree_vec3 *point)
 {
     // heights of the ends above the plane
     const scree_real plane_margin = tolerance * g->size * g->size;
-    const scree_real h0 = scree_vec3_dot(g->normal, scree_vec3_sub(edge->p[0], g->face.p[0]));
-    const scree_real h1 = scree_vec3_dot(g->normal, scree_vec3_sub(edge->p[1], g->face.p[0]));
+    const scree_real h0 = scree_vec3_dot(g->normal, scree_vec3_sub(edge->p[0], g->p[0]));
+    const scree_real h1 = scree_vec3_dot(g->normal, scree_vec3_sub(edge->p[1], g->p[0]));
     if ((h0 > plane_margin && h1 > plane_margin) || (h0 < -plane_margin && h1 < -plane_margin)) return SCREE_SIGN_APART;
     const bool is_entering = h0 > plane_margin && h1 < -plane_margin;
     const bool is_leaving = h0 < -plane_margin && h1 > plane_margin;
@@ -56,7 +48,7 @@ SCREE_FN scree_sign_verdict scree_edge_sign(const scree_line *edge, scree_real s
     bool is_unsure = false;
     for (int32_t k = 0; k < 3; ++k)
     {
-        const scree_real turn = scree_line_orientation(edge, direction, &g->face, k);
+        const scree_real turn = scree_line_orientation(edge, direction, g, k);
         const scree_real inward = is_entering ? turn : -turn;
         if (inward < -side_margin) return SCREE_SIGN_APART;
         is_unsure = is_unsure || inward <= side_margin;
@@ -67,6 +59,34 @@ SCREE_FN scree_sign_verdict scree_edge_sign(const scree_line *edge, scree_real s
     if (scree_abs(h0) <= scree_abs(h1)) *point = scree_vec3_add_scaled(edge->p[0], direction, h0 / (h0 - h1));
     else *point = scree_vec3_add_scaled(edge->p[1], direction, h1 / (h0 - h1));
     return is_entering ? SCREE_SIGN_ENTERS : SCREE_SIGN_LEAVES;
+}
+
+/// Which count a vertex gets from one triangle, seen from outside the hierarchy: s02 of a vertex of A with the triangle
+/// of B, or -s20 of a vertex of B with the triangle of A: SCREE_SIGN_UNSURE if any sign is not certain.
+SCREE_FN int32_t scree_vertex_sign(scree_vec3 v, const scree_face *g, bool is_a, scree_real tolerance)
+{
+    // turn of the vertex against each side in the plane
+    const scree_real margin = tolerance * g->size;
+    int32_t num_left = 0;
+    int32_t num_right = 0;
+    for (int32_t k = 0; k < 3; ++k)
+    {
+        const scree_vec3 p = g->p[k];
+        const scree_vec3 q = g->p[k == 2 ? 0 : k + 1];
+        const scree_real turn = (q.x - p.x) * (v.y - p.y) - (q.y - p.y) * (v.x - p.x);
+        num_left += turn > margin;
+        num_right += turn < -margin;
+    }
+    if (num_left > 0 && num_right > 0) return 0;
+    if (num_left < 3 && num_right < 3) return SCREE_SIGN_UNSURE;
+
+    const scree_real height = scree_vec3_dot(g->normal, scree_vec3_sub(v, g->p[0]));
+    const scree_real plane_margin = margin * g->size;
+    if (scree_abs(height) <= plane_margin) return SCREE_SIGN_UNSURE;
+    const bool is_upward = num_left == 3;
+    const bool is_above = (height > 0) == is_upward;
+    if (is_a) return !is_above ? 0 : is_upward ? -1 : 1;
+    return is_above ? 0 : is_upward ? 1 : -1;
 }
 
 #endif

@@ -13,7 +13,8 @@
 
 #include "contact/overlap_crossings_kernel.h"
 
-/// A triangle is a sliver below this height over its longest side: its normal is not good enough for a foot.
+/// A triangle is thin, and a sliver, below these heights over its longest side.
+#define SCREE_THIN_HEIGHT ((scree_real)0.03)
 #define SCREE_SLIVER_HEIGHT ((scree_real)1e-3)
 
 typedef struct scree_overlap_sums
@@ -41,43 +42,50 @@ SCREE_FN scree_vec3 scree_segment_foot(scree_vec3 p0, scree_vec3 p1)
 }
 
 /// Foot of C on an edge, computed once.
-SCREE_FN scree_vec3 scree_overlap_edge_foot(scree_overlap_body *body, int32_t e, scree_vec3 middle)
+SCREE_FN scree_vec3 scree_overlap_edge_foot(scree_overlap_edge *edge, scree_vec3 middle)
 {
-    scree_overlap_edge *edge = body->edges + e;
     if (!edge->has_foot)
     {
-        edge->foot = scree_segment_foot(scree_vec3_sub(body->points[edge->v[0]], middle),
-                                        scree_vec3_sub(body->points[edge->v[1]], middle));
+        edge->foot =
+            scree_segment_foot(scree_vec3_sub(edge->line.p[0], middle), scree_vec3_sub(edge->line.p[1], middle));
         edge->has_foot = true;
     }
     return edge->foot;
 }
 
-/// Foot of C on a triangle's plane, computed once, from the point of the triangle's sides nearest to C.
-/// The foot on a sliver is that point itself.
-SCREE_FN scree_vec3 scree_overlap_plane_foot(scree_overlap_body *body, int32_t t, scree_vec3 middle)
+/// Point of the triangle's sides nearest to C.
+SCREE_FN scree_vec3 scree_nearest_on_sides(const scree_face *face, scree_vec3 middle)
 {
-    scree_overlap_triangle *triangle = body->triangles + t;
-    if (triangle->has_foot) return triangle->foot;
-    triangle->has_foot = true;
-    triangle->boundary = scree_vec3_zero();
     scree_vec3 nearest = scree_vec3_zero();
     scree_real least = SCREE_REAL_MAX;
     for (int32_t k = 0; k < 3; ++k)
     {
-        const scree_vec3 p = scree_vec3_sub(body->points[triangle->v[k]], middle);
-        const scree_vec3 q = scree_vec3_sub(body->points[triangle->v[k == 2 ? 0 : k + 1]], middle);
-        const scree_vec3 foot = scree_segment_foot(p, q);
+        const scree_vec3 foot =
+            scree_segment_foot(scree_vec3_sub(face->p[k], middle), scree_vec3_sub(face->p[k == 2 ? 0 : k + 1], middle));
         const scree_real distance = scree_vec3_dot(foot, foot);
         if (distance >= least) continue;
         least = distance;
         nearest = foot;
     }
-    const scree_vec3 n = triangle->normal;
+    return nearest;
+}
+
+/// Foot of C on a triangle's plane, computed once. A thin triangle's normal is poor, so its plane is taken through the
+/// point of its sides nearest to C; the foot on a sliver is that point itself.
+SCREE_FN scree_vec3 scree_overlap_plane_foot(scree_overlap_triangle *triangle, scree_vec3 middle)
+{
+    if (triangle->has_foot) return triangle->foot;
+    triangle->has_foot = true;
+    triangle->boundary = scree_vec3_zero();
+    const scree_vec3 n = triangle->face.normal;
     const scree_real n2 = scree_vec3_dot(n, n);
-    const scree_real size2 = triangle->size * triangle->size;
-    const bool is_sliver = n2 <= SCREE_SLIVER_HEIGHT * size2 * (SCREE_SLIVER_HEIGHT * size2);
-    triangle->foot = is_sliver ? nearest : scree_vec3_scale(n, scree_vec3_dot(n, nearest) / n2);
+    const scree_real size2 = triangle->face.size * triangle->face.size;
+    scree_vec3 on_plane = scree_vec3_sub(triangle->face.p[0], middle);
+    if (n2 < SCREE_THIN_HEIGHT * size2 * (SCREE_THIN_HEIGHT * size2))
+        on_plane = scree_nearest_on_sides(&triangle->face, middle);
+    triangle->foot = on_plane;
+    if (n2 > SCREE_SLIVER_HEIGHT * size2 * (SCREE_SLIVER_HEIGHT * size2))
+        triangle->foot = scree_vec3_scale(n, scree_vec3_dot(n, on_plane) / n2);
     return triangle->foot;
 }
 
@@ -89,14 +97,9 @@ SCREE_FN scree_box scree_overlap_points_box(const scree_overlap_slice *slice)
     for (int32_t side = 0; side < 2; ++side)
     {
         const scree_overlap_body *body = slice->body + side;
-        for (int32_t e = 0; e < body->num_edges; ++e)
-        {
-            for (int32_t end = 0; end < 2; ++end)
-            {
-                const int32_t v = body->edges[e].v[end];
-                if (body->inside[v] != 0) box = scree_box_with_point(box, body->points[v]);
-            }
-        }
+        if (body->num_inside == 0) continue;
+        for (int32_t v = 0; v < body->num_vertices; ++v)
+            if (body->inside[v] != 0) box = scree_box_with_point(box, body->points[v]);
     }
     return box;
 }
@@ -105,16 +108,18 @@ SCREE_FN scree_box scree_overlap_points_box(const scree_overlap_slice *slice)
 SCREE_FN void scree_overlap_add_point(scree_overlap_body *body, int32_t e, scree_vec3 x, scree_real sign,
                                       scree_overlap_sums *sums)
 {
-    const scree_overlap_edge *edge = body->edges + e;
-    const scree_vec3 r = scree_overlap_edge_foot(body, e, sums->middle);
-    const scree_vec3 q_left = scree_overlap_plane_foot(body, edge->left, sums->middle);
-    const scree_vec3 q_right = scree_overlap_plane_foot(body, edge->right, sums->middle);
+    scree_overlap_edge *edge = body->edges + e;
+    scree_overlap_triangle *left = body->triangles + edge->left;
+    scree_overlap_triangle *right = body->triangles + edge->right;
+    const scree_vec3 r = scree_overlap_edge_foot(edge, sums->middle);
+    const scree_vec3 q_left = scree_overlap_plane_foot(left, sums->middle);
+    const scree_vec3 q_right = scree_overlap_plane_foot(right, sums->middle);
     const scree_vec3 twice_area = scree_vec3_scale(scree_vec3_cross(r, x), sign);
     const scree_real term = scree_vec3_dot(scree_vec3_sub(q_left, q_right), twice_area);
     sums->six_volume += term;
     sums->moment = scree_vec3_add_scaled(sums->moment, scree_vec3_add(r, x), term);
-    body->triangles[edge->left].boundary = scree_vec3_add(body->triangles[edge->left].boundary, twice_area);
-    body->triangles[edge->right].boundary = scree_vec3_sub(body->triangles[edge->right].boundary, twice_area);
+    left->boundary = scree_vec3_add(left->boundary, twice_area);
+    right->boundary = scree_vec3_sub(right->boundary, twice_area);
 }
 
 /// All points of all edges.
@@ -130,6 +135,7 @@ SCREE_FN void scree_overlap_sum_edges(scree_overlap_slice *slice, scree_overlap_
     for (int32_t side = 0; side < 2; ++side)
     {
         scree_overlap_body *body = slice->body + side;
+        if (body->num_inside == 0) continue;
         for (int32_t e = 0; e < body->num_edges; ++e)
         {
             for (int32_t end = 0; end < 2; ++end)
@@ -220,25 +226,23 @@ SCREE_FN bool scree_overlap_make_segments(scree_overlap_slice *slice)
 
 SCREE_FN void scree_overlap_sum_segments(scree_overlap_slice *slice, scree_overlap_sums *sums)
 {
-    scree_overlap_body *a = slice->body;
-    scree_overlap_body *b = slice->body + 1;
     for (int32_t s = 0; s < slice->num_segments; ++s)
     {
         const scree_overlap_segment *segment = slice->segments + s;
         if (segment->p < 0 || segment->q < 0) continue;
         const scree_vec3 p = scree_vec3_sub(slice->crossings[segment->p].point, sums->middle);
         const scree_vec3 q = scree_vec3_sub(slice->crossings[segment->q].point, sums->middle);
-        const scree_vec3 foot_a = scree_overlap_plane_foot(a, segment->triangle_a, sums->middle);
-        const scree_vec3 foot_b = scree_overlap_plane_foot(b, segment->triangle_b, sums->middle);
+        scree_overlap_triangle *f = slice->body[0].triangles + segment->triangle_a;
+        scree_overlap_triangle *g = slice->body[1].triangles + segment->triangle_b;
+        const scree_vec3 foot_f = scree_overlap_plane_foot(f, sums->middle);
+        const scree_vec3 foot_g = scree_overlap_plane_foot(g, sums->middle);
         const scree_vec3 twice_area = scree_vec3_cross(p, q);
-        const scree_real term = scree_vec3_dot(scree_vec3_sub(foot_a, foot_b), twice_area);
+        const scree_real term = scree_vec3_dot(scree_vec3_sub(foot_f, foot_g), twice_area);
         sums->six_volume += term;
         sums->moment = scree_vec3_add_scaled(sums->moment, scree_vec3_add(p, q), term);
         sums->area_vector = scree_vec3_add(sums->area_vector, twice_area);
-        scree_vec3 *boundary = &a->triangles[segment->triangle_a].boundary;
-        *boundary = scree_vec3_add(*boundary, twice_area);
-        boundary = &b->triangles[segment->triangle_b].boundary;
-        *boundary = scree_vec3_sub(*boundary, twice_area);
+        f->boundary = scree_vec3_add(f->boundary, twice_area);
+        g->boundary = scree_vec3_sub(g->boundary, twice_area);
     }
 }
 
@@ -257,10 +261,10 @@ SCREE_FN void scree_overlap_sum_faces(scree_overlap_slice *slice, scree_overlap_
             if (!triangle->has_foot) continue;
             const scree_real six_volume = scree_vec3_dot(triangle->foot, triangle->boundary);
             sums->moment = scree_vec3_add_scaled(sums->moment, triangle->foot, six_volume);
-            const scree_real n2 = scree_vec3_dot(triangle->normal, triangle->normal);
+            const scree_real n2 = scree_vec3_dot(triangle->face.normal, triangle->face.normal);
             if (!(n2 > 0)) continue;
-            const scree_real along = scree_vec3_dot(triangle->normal, triangle->boundary);
-            twice_sum = scree_vec3_add_scaled(twice_sum, triangle->normal, along / n2);
+            const scree_real along = scree_vec3_dot(triangle->face.normal, triangle->boundary);
+            twice_sum = scree_vec3_add_scaled(twice_sum, triangle->face.normal, along / n2);
             twice_area += scree_abs(along) / scree_sqrt(n2);
         }
     }
@@ -312,16 +316,13 @@ SCREE_FN scree_real scree_overlap_extent_along(const scree_overlap_slice *slice,
     for (int32_t side = 0; side < 2; ++side)
     {
         const scree_overlap_body *body = slice->body + side;
-        for (int32_t e = 0; e < body->num_edges; ++e)
+        if (body->num_inside == 0) continue;
+        for (int32_t v = 0; v < body->num_vertices; ++v)
         {
-            for (int32_t end = 0; end < 2; ++end)
-            {
-                const int32_t v = body->edges[e].v[end];
-                if (body->inside[v] == 0) continue;
-                const scree_real along = scree_vec3_dot(n, scree_vec3_sub(body->points[v], middle));
-                least = scree_min(least, along);
-                most = scree_max(most, along);
-            }
+            if (body->inside[v] == 0) continue;
+            const scree_real along = scree_vec3_dot(n, scree_vec3_sub(body->points[v], middle));
+            least = scree_min(least, along);
+            most = scree_max(most, along);
         }
     }
     return most > least ? most - least : 0;

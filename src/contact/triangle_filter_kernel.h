@@ -6,11 +6,26 @@
 /// z have one side only: rays along -z from the vertices of A and along +z from those of B decide what is inside, and
 /// along them the half-spaces are only entered deeper. The tests use the very coordinates that the overlap uses, so
 /// what they drop would have counted zero; only the half-spaces are rounded, and they are wider by more than that.
+///
+/// Each vertex gets a code of the sides of the region on which it is outside (Cohen & Sutherland). A triangle misses
+/// the region exactly if its corners have a side in common.
 #ifndef SCREE_TRIANGLE_FILTER_KERNEL_H
 #define SCREE_TRIANGLE_FILTER_KERNEL_H
 
 #include "contact/overlap_frame_kernel.h"
 #include "contact/overlap_parts.h"
+
+/// Sides of a region.
+enum
+{
+    SCREE_OUTSIDE_X = 1 | 2,   ///< lower, upper
+    SCREE_OUTSIDE_Y = 4 | 8,   ///< lower, upper
+    SCREE_OUTSIDE_BELOW = 16,  ///< drops triangles of A only
+    SCREE_OUTSIDE_ABOVE = 32,  ///< drops triangles of B only
+    SCREE_OUTSIDE_BEYOND = 64, ///< of the half-space
+    SCREE_OUTSIDE_A = SCREE_OUTSIDE_X | SCREE_OUTSIDE_Y | SCREE_OUTSIDE_BELOW | SCREE_OUTSIDE_BEYOND,
+    SCREE_OUTSIDE_B = SCREE_OUTSIDE_X | SCREE_OUTSIDE_Y | SCREE_OUTSIDE_ABOVE | SCREE_OUTSIDE_BEYOND
+};
 
 /// What a triangle must reach into: a box, and the half-space direction . v <= reach.
 typedef struct scree_filter_region
@@ -18,6 +33,7 @@ typedef struct scree_filter_region
     scree_box box;
     scree_vec3 direction;
     scree_real reach;
+    int32_t dropping; ///< sides that drop a triangle: SCREE_OUTSIDE_A or SCREE_OUTSIDE_B
 } scree_filter_region;
 
 /// A shape seen from the working frame.
@@ -41,54 +57,68 @@ SCREE_FN scree_vec3 scree_posed_vertex(const scree_posed_shape *posed, int32_t v
     return scree_affine(&posed->rows, posed->shape->vertices[v], posed->offset);
 }
 
-/// Smallest value of `direction` over the corners of a triangle at least `reach`'s side of the region, and box overlap.
-SCREE_FN bool scree_filter_keeps(const scree_filter_region *region, scree_box box, const scree_vec3 *points,
-                                 const int32_t *v)
+SCREE_FN int32_t scree_filter_outcode(const scree_filter_region *region, scree_vec3 p)
 {
-    if (!scree_box_overlaps(region->box, box)) return false;
-    return scree_vec3_dot(region->direction, points[v[0]]) <= region->reach ||
-           scree_vec3_dot(region->direction, points[v[1]]) <= region->reach ||
-           scree_vec3_dot(region->direction, points[v[2]]) <= region->reach;
+    const scree_vec3 lower = region->box.lower;
+    const scree_vec3 upper = region->box.upper;
+    const scree_vec3 d = region->direction;
+    const int32_t beyond = d.x * p.x + d.y * p.y + d.z * p.z > region->reach;
+    return (int32_t)(p.x < lower.x) | (int32_t)(p.x > upper.x) << 1 | (int32_t)(p.y < lower.y) << 2 |
+           (int32_t)(p.y > upper.y) << 3 | (int32_t)(p.z < lower.z) << 4 | (int32_t)(p.z > upper.z) << 5 | beyond << 6;
 }
 
-/// All vertices into the working frame, in the order of the shape.
-SCREE_FN void scree_filter_load_all(scree_overlap_body *body, const scree_posed_shape *posed)
+/// All vertices into the working frame, in the order of the shape. Returns the largest direction . v.
+SCREE_FN scree_real scree_filter_load_all(scree_overlap_body *body, const scree_posed_shape *posed,
+                                          scree_vec3 direction)
 {
     const int32_t num = posed->shape->num_vertices;
+    scree_real most = -SCREE_REAL_MAX;
     for (int32_t v = 0; v < num; ++v)
     {
-        body->points[v] = scree_posed_vertex(posed, v);
+        const scree_vec3 p = scree_posed_vertex(posed, v);
+        body->points[v] = p;
         body->vertex_id[v] = v;
+        most = scree_max(most, scree_vec3_dot(direction, p));
     }
     body->num_vertices = num;
+    return most;
+}
+
+/// Sides on which all three corners are outside.
+SCREE_FN int32_t scree_filter_common_sides(const scree_overlap_body *body, const int32_t *v)
+{
+    return body->outcode[v[0]] & body->outcode[v[1]] & body->outcode[v[2]];
+}
+
+/// Keeps triangles of a loaded body.
+SCREE_FN void scree_filter_all(scree_overlap_body *body, const scree_shape_view *shape,
+                               const scree_filter_region *region)
+{
+    for (int32_t v = 0; v < body->num_vertices; ++v) body->outcode[v] = scree_filter_outcode(region, body->points[v]);
+    int32_t num = 0;
+    for (int32_t id = 0; id < shape->num_triangles; ++id)
+    {
+        scree_kept_triangle *kept = body->kept + num;
+        for (int32_t k = 0; k < 3; ++k) kept->v[k] = shape->triangles[id].v[k];
+        kept->id = id;
+        num += (scree_filter_common_sides(body, kept->v) & region->dropping) == 0;
+    }
+    body->num_triangles = num;
 }
 
 /// Place of vertex v of the shape among the kept ones, where it is put if it is new.
-SCREE_FN int32_t scree_filter_vertex(scree_overlap_body *body, const scree_posed_shape *posed, int32_t v)
+SCREE_FN int32_t scree_filter_vertex(scree_overlap_body *body, const scree_posed_shape *posed,
+                                     const scree_filter_region *region, int32_t v)
 {
     // a slot is true only if the vertex it leads to says so too, so slots need no clearing
     const int32_t slot = body->vertex_slot[v];
     if (slot < body->num_vertices && body->vertex_id[slot] == v) return slot;
     const int32_t added = body->num_vertices++;
     body->points[added] = scree_posed_vertex(posed, v);
+    body->outcode[added] = scree_filter_outcode(region, body->points[added]);
     body->vertex_id[added] = v;
     body->vertex_slot[v] = added;
     return added;
-}
-
-/// Keeps triangle `id` with the local corners v if the region asks for it.
-SCREE_FN void scree_filter_triangle(scree_overlap_body *body, const scree_filter_region *region, int32_t id,
-                                    const int32_t *v)
-{
-    scree_box box;
-    box.lower = scree_vec3_min(scree_vec3_min(body->points[v[0]], body->points[v[1]]), body->points[v[2]]);
-    box.upper = scree_vec3_max(scree_vec3_max(body->points[v[0]], body->points[v[1]]), body->points[v[2]]);
-    if (!scree_filter_keeps(region, box, body->points, v)) return;
-    scree_overlap_triangle *triangle = body->triangles + body->num_triangles;
-    triangle->id = id;
-    for (int32_t k = 0; k < 3; ++k) triangle->v[k] = v[k];
-    body->triangle_boxes[body->num_triangles] = box;
-    ++body->num_triangles;
 }
 
 /// Can anything in a box of the shape's tree reach into the region? Never says no where a triangle would be kept.
@@ -102,21 +132,23 @@ SCREE_FN bool scree_filter_enters_node(const scree_posed_shape *posed, const scr
         (scree_abs(middle.x) + scree_abs(middle.y) + scree_abs(middle.z) + scree_abs(posed->offset.x) +
          scree_abs(posed->offset.y) + scree_abs(posed->offset.z) + half.x + half.y + half.z);
     half = scree_vec3_add(half, scree_vec3_make(rounding, rounding, rounding));
-    scree_box box;
-    box.lower = scree_vec3_sub(middle, half);
-    box.upper = scree_vec3_add(middle, half);
-    if (!scree_box_overlaps(region->box, box)) return false;
+    if (middle.x + half.x < region->box.lower.x || middle.x - half.x > region->box.upper.x) return false;
+    if (middle.y + half.y < region->box.lower.y || middle.y - half.y > region->box.upper.y) return false;
+    if ((region->dropping & SCREE_OUTSIDE_BELOW) != 0 && middle.z + half.z < region->box.lower.z) return false;
+    if ((region->dropping & SCREE_OUTSIDE_ABOVE) != 0 && middle.z - half.z > region->box.upper.z) return false;
     const scree_vec3 d = region->direction;
     const scree_real least =
         scree_vec3_dot(d, middle) - scree_abs(d.x) * half.x - scree_abs(d.y) * half.y - scree_abs(d.z) * half.z;
-    return least <= region->reach + rounding;
+    return least <= region->reach;
 }
 
-/// Kept triangles through the tree. False if the buffers are too small.
+/// Keeps triangles through the tree. False if the buffers are too small.
 SCREE_FN bool scree_filter_tree(scree_overlap_body *body, const scree_posed_shape *posed,
                                 const scree_filter_region *region)
 {
     const scree_lbvh_view *tree = &posed->shape->tree;
+    body->num_vertices = 0;
+    body->num_triangles = 0;
     int32_t k = tree->root;
     while (k != SCREE_LBVH_END)
     {
@@ -132,99 +164,91 @@ SCREE_FN bool scree_filter_tree(scree_overlap_body *body, const scree_posed_shap
             continue;
         }
         if (body->num_triangles == body->max_triangles || body->num_vertices + 3 > body->max_vertices) return false;
-        const int32_t id = -1 - node->first_child;
-        int32_t v[3];
-        for (int32_t c = 0; c < 3; ++c) v[c] = scree_filter_vertex(body, posed, posed->shape->triangles[id].v[c]);
-        scree_filter_triangle(body, region, id, v);
+        scree_kept_triangle *kept = body->kept + body->num_triangles;
+        kept->id = -1 - node->first_child;
+        for (int32_t c = 0; c < 3; ++c)
+            kept->v[c] = scree_filter_vertex(body, posed, region, posed->shape->triangles[kept->id].v[c]);
+        body->num_triangles += (scree_filter_common_sides(body, kept->v) & region->dropping) == 0;
         k = node->escape;
     }
     return true;
+}
+
+/// Drops kept triangles that do not reach into a smaller region, and codes the vertices for it.
+SCREE_FN void scree_filter_again(scree_overlap_body *body, const scree_filter_region *region)
+{
+    for (int32_t v = 0; v < body->num_vertices; ++v) body->outcode[v] = scree_filter_outcode(region, body->points[v]);
+    int32_t num = 0;
+    for (int32_t t = 0; t < body->num_triangles; ++t)
+    {
+        const scree_kept_triangle kept = body->kept[t];
+        body->kept[num] = kept;
+        num += (scree_filter_common_sides(body, kept.v) & region->dropping) == 0;
+    }
+    body->num_triangles = num;
+}
+
+/// Box of all kept triangles.
+SCREE_FN void scree_filter_kept_box(scree_overlap_body *body)
+{
+    scree_box box = scree_box_empty();
+    for (int32_t t = 0; t < body->num_triangles; ++t)
+        for (int32_t k = 0; k < 3; ++k) box = scree_box_with_point(box, body->points[body->kept[t].v[k]]);
+    body->box = box;
 }
 
 /// Room for this shape? Sets slice->lack if not.
 SCREE_FN bool scree_filter_has_room(scree_overlap_slice *slice, int32_t side, const scree_shape_view *shape)
 {
     const scree_overlap_body *body = slice->body + side;
-    if (scree_filter_uses_tree(shape))
-    {
-        if (shape->num_vertices <= body->max_shape_vertices && shape->num_triangles <= body->max_shape_triangles)
-            return true;
+    const bool uses_tree = scree_filter_uses_tree(shape);
+    if (shape->num_triangles > body->max_shape_triangles ||
+        (uses_tree && shape->num_vertices > body->max_shape_vertices))
         slice->lack = SCREE_LACK_SHAPE;
-        return false;
-    }
-    if (shape->num_triangles > body->max_shape_triangles)
-    {
-        slice->lack = SCREE_LACK_SHAPE;
-        return false;
-    }
-    if (shape->num_vertices <= body->max_vertices && shape->num_triangles <= body->max_triangles) return true;
-    slice->lack = SCREE_LACK_PIECES;
-    return false;
-}
-
-/// Keeps the triangles of one body that reach into the region; its vertices are loaded already unless it uses its tree.
-SCREE_FN bool scree_filter_run(scree_overlap_slice *slice, int32_t side, const scree_posed_shape *posed,
-                               const scree_filter_region *region)
-{
-    scree_overlap_body *body = slice->body + side;
-    body->num_triangles = 0;
-    if (scree_filter_uses_tree(posed->shape))
-    {
-        body->num_vertices = 0;
-        if (scree_filter_tree(body, posed, region)) return true;
+    else if (!uses_tree && (shape->num_vertices > body->max_vertices || shape->num_triangles >= body->max_triangles))
         slice->lack = SCREE_LACK_PIECES;
-        return false;
-    }
-    for (int32_t id = 0; id < posed->shape->num_triangles; ++id)
-        scree_filter_triangle(body, region, id, posed->shape->triangles[id].v);
-    return true;
+    return slice->lack == SCREE_LACK_NOTHING;
 }
 
-/// Box of all kept triangles.
-SCREE_FN scree_box scree_filter_kept_box(const scree_overlap_body *body)
+/// What is derived from the corners of kept triangle `from`, written as triangle t.
+SCREE_FN void scree_filter_finish_triangle(scree_overlap_body *body, int32_t from, int32_t t)
 {
-    scree_box box = scree_box_empty();
-    for (int32_t t = 0; t < body->num_triangles; ++t) box = scree_box_union(box, body->triangle_boxes[t]);
-    return box;
+    const scree_kept_triangle kept = body->kept[from];
+    scree_overlap_triangle *triangle = body->triangles + t;
+    const scree_vec3 p0 = body->points[kept.v[0]];
+    const scree_vec3 p1 = body->points[kept.v[1]];
+    const scree_vec3 p2 = body->points[kept.v[2]];
+    triangle->id = kept.id;
+    triangle->v[0] = kept.v[0];
+    triangle->v[1] = kept.v[1];
+    triangle->v[2] = kept.v[2];
+    triangle->has_foot = false;
+    triangle->face.p[0] = p0;
+    triangle->face.p[1] = p1;
+    triangle->face.p[2] = p2;
+    triangle->face.normal = scree_vec3_cross(scree_vec3_sub(p1, p0), scree_vec3_sub(p2, p0));
+    const int32_t id0 = body->vertex_id[kept.v[0]];
+    const int32_t id1 = body->vertex_id[kept.v[1]];
+    const int32_t id2 = body->vertex_id[kept.v[2]];
+    triangle->face.reversed = (int32_t)(id0 > id1) | (int32_t)(id1 > id2) << 1 | (int32_t)(id2 > id0) << 2;
+    scree_box box;
+    box.lower = scree_vec3_min(scree_vec3_min(p0, p1), p2);
+    box.upper = scree_vec3_max(scree_vec3_max(p0, p1), p2);
+    body->triangle_boxes[t] = box;
+    triangle->face.size = box.upper.x - box.lower.x + (box.upper.y - box.lower.y) + (box.upper.z - box.lower.z);
+    body->triangle_slot[kept.id] = t;
 }
 
-/// Drops the kept triangles that do not meet the box.
-SCREE_FN void scree_filter_shrink(scree_overlap_body *body, scree_box box)
+/// Finishes all kept triangles, those that reach into all sides of the region first.
+SCREE_FN void scree_filter_finish(scree_overlap_body *body)
 {
-    int32_t num = 0;
-    for (int32_t t = 0; t < body->num_triangles; ++t)
-    {
-        if (!scree_box_overlaps(body->triangle_boxes[t], box)) continue;
-        if (num < t)
-        {
-            body->triangles[num] = body->triangles[t];
-            body->triangle_boxes[num] = body->triangle_boxes[t];
-        }
-        ++num;
-    }
-    body->num_triangles = num;
-}
-
-/// Enters what is derived from the corners of each kept triangle, and marks its slot.
-SCREE_FN void scree_filter_finish_triangles(scree_overlap_body *body)
-{
-    for (int32_t t = 0; t < body->num_triangles; ++t)
-    {
-        scree_overlap_triangle *triangle = body->triangles + t;
-        const scree_vec3 p = body->points[triangle->v[0]];
-        triangle->normal = scree_vec3_cross(scree_vec3_sub(body->points[triangle->v[1]], p),
-                                            scree_vec3_sub(body->points[triangle->v[2]], p));
-        const scree_vec3 extent = scree_vec3_sub(body->triangle_boxes[t].upper, body->triangle_boxes[t].lower);
-        triangle->size = extent.x + extent.y + extent.z;
-        triangle->reversed = 0;
-        triangle->has_foot = false;
-        for (int32_t k = 0; k < 3; ++k)
-        {
-            const int32_t next = k == 2 ? 0 : k + 1;
-            if (body->vertex_id[triangle->v[k]] > body->vertex_id[triangle->v[next]]) triangle->reversed |= 1 << k;
-        }
-        body->triangle_slot[triangle->id] = t;
-    }
+    int32_t t = 0;
+    for (int32_t from = 0; from < body->num_triangles; ++from)
+        if (scree_filter_common_sides(body, body->kept[from].v) == 0) scree_filter_finish_triangle(body, from, t++);
+    body->num_near_triangles = t;
+    if (t == body->num_triangles) return;
+    for (int32_t from = 0; from < body->num_triangles; ++from)
+        if (scree_filter_common_sides(body, body->kept[from].v) != 0) scree_filter_finish_triangle(body, from, t++);
 }
 
 #endif

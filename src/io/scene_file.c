@@ -42,7 +42,9 @@ static scree_status load(scree_scene_file *file, const scree_scene_reader *reade
     {
         const cyaml_err_t fault = cyaml_load_data((const uint8_t *)numbers, num_numbers, &cyaml_settings,
                                                   scree_scene_root_value(), (cyaml_data_t **)&scene, NULL);
-        if (fault == CYAML_ERR_OOM) status = SCREE_OUT_OF_MEMORY;
+        // the text was made by libyaml itself, so nothing but a lack of memory makes libyaml refuse it
+        if (fault == CYAML_ERR_OOM || fault == CYAML_ERR_LIBYAML_PARSER || fault == CYAML_ERR_LIBYAML_PARSER_INIT)
+            status = SCREE_OUT_OF_MEMORY;
         else if (fault != CYAML_OK)
         {
             scree_report_add(reader->report, "%.600s: libcyaml refuses the checked scene: %s; please report this",

@@ -68,8 +68,9 @@ static bool is_indented_by_tab(const scree_yaml_text *text, size_t line)
 /// Tells what libyaml found.
 static scree_status tell_syntax(const yaml_parser_t *parser, const scree_yaml_text *text, scree_report *report)
 {
-    const char *problem = parser->problem != NULL ? parser->problem : "not understood";
-    if (parser->error == YAML_MEMORY_ERROR) return SCREE_OUT_OF_MEMORY;
+    const char *problem = parser->problem;
+    // libyaml leaves some of its own allocation failures without a text
+    if (parser->error == YAML_MEMORY_ERROR || parser->problem == NULL) return SCREE_OUT_OF_MEMORY;
     if (parser->error == YAML_READER_ERROR)
     {
         scree_report_add(report, "%s:%lld: byte %zu: %s; %s", text->name,

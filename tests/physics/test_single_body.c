@@ -62,31 +62,33 @@ static void slide(double tangent, double friction, double seconds, double *speed
 
 static void test_block_sticks_below_the_angle_of_friction(void)
 {
-    double speed, distance;
-    slide(0.4 * 0.98, 0.4, 1.0, &speed, &distance);
-    // it rests: what is left is the slow ringing of the springs
-    SCREE_CHECK(fabs(speed) < 1e-5);
-    SCREE_CHECK(fabs(distance) < 2e-4);
+    double speed, early, late;
+    slide(0.4 * 0.98, 0.4, 0.3, &speed, &early);
+    slide(0.4 * 0.98, 0.4, 0.8, &speed, &late);
+    // once it has settled it does not creep: half a second later it is where it was
+    SCREE_CHECK(fabs(speed) < 1e-9);
+    SCREE_CHECK(fabs(late - early) < 1e-8);
+}
+
+/// Mean acceleration of a sliding block, after it has settled, against g (sin - mu cos). A block that slides on its
+/// face chatters: its normal force swings by a fifth around the weight at some 200 rad/s. The swing of the speed,
+/// mu/5 g/200 = 4 mm/s, is what a mean over 0.8 s may be off by at either end.
+static void check_acceleration(double tangent, double friction)
+{
+    const double angle = atan(tangent), expected = 9.81 * (sin(angle) - friction * cos(angle));
+    double early, late, distance;
+    slide(tangent, friction, 0.2, &early, &distance);
+    slide(tangent, friction, 1.0, &late, &distance);
+    printf("tan %.2f, mu %.2f: acceleration %.6f, expected %.6f m/s^2\n", tangent, friction, (late - early) / 0.8,
+           expected);
+    SCREE_CHECK_CLOSE((late - early) / 0.8, expected, 2 * 0.004 / 0.8);
 }
 
 static void test_block_slips_above_the_angle_of_friction(void)
 {
-    const double tangent = 0.4 * 1.1, angle = atan(tangent), acceleration = 9.81 * (sin(angle) - 0.4 * cos(angle));
-    double speed_early, speed_late, distance;
-    slide(tangent, 0.4, 0.5, &speed_early, &distance);
-    slide(tangent, 0.4, 1.0, &speed_late, &distance);
-    printf("acceleration %.9g, expected %.9g m/s^2\n", (speed_late - speed_early) / 0.5, acceleration);
-    // once it slides the force is mu times the weight; the first moments, when it settles, drop out of the difference
-    SCREE_CHECK_CLOSE((speed_late - speed_early) / 0.5, acceleration, 2e-3 * acceleration);
-}
-
-static void test_slipping_block_shows_the_friction_it_was_given(void)
-{
-    const double tangent = 1.0, angle = atan(tangent), acceleration = 9.81 * (sin(angle) - 0.3 * cos(angle));
-    double speed_early, speed_late, distance;
-    slide(tangent, 0.3, 0.2, &speed_early, &distance);
-    slide(tangent, 0.3, 0.5, &speed_late, &distance);
-    SCREE_CHECK_CLOSE((speed_late - speed_early) / 0.3, acceleration, 2e-3 * acceleration);
+    check_acceleration(0.4 * 1.05, 0.4);
+    check_acceleration(0.8, 0.4);
+    check_acceleration(1.0, 0.3);
 }
 
 /// A cube dropped from a small height with the given orientation; checks that it lies flat and still at the end.
@@ -127,6 +129,7 @@ static void test_cube_dropped_flat_comes_to_rest(void) { drop("flat", 0.06, "[1,
 static void test_cube_dropped_on_an_edge_comes_to_rest(void) { drop("edge", 0.09, "[0.93, 0.36755, 0, 0]"); }
 static void test_cube_dropped_on_a_corner_comes_to_rest(void) { drop("corner", 0.1, "[0.9, 0.3, 0.28, 0.1]"); }
 
+/// Ten cubes, each a millimetre or four beside the one below it. They start touching, sag and sway, and come to rest.
 static void test_tower_of_ten_cubes_stands(void)
 {
     char bodies[2048] = "";
@@ -139,25 +142,39 @@ static void test_tower_of_ten_cubes_stands(void)
     }
     char text[4096];
     snprintf(text, sizeof text,
-             "name: tower\ntime: {end: 2, step: 1e-4}\n" MATERIALS
+             "name: tower\ntime: {end: 2, step: 1e-4}\n"
+             "materials:\n"
+             "  - {name: stone, density: 2500, youngs_modulus: 1e8, poisson_ratio: 0.25}\n"
+             "shapes:\n"
+             "  - {name: cube, source: box, size: [0.1, 0.1, 0.1]}\n"
+             "  - {name: plate, source: box, size: [4, 4, 0.2]}\n"
              "contact_laws: [{materials: [stone, stone], friction_coefficient: 0.5, restitution_coefficient: 0.3}]\n"
              "particles:\n  - name: cubes\n    shape: cube\n    material: stone\n    bodies: [%s]\n"
              "walls:\n  - {name: floor, shape: plate, material: stone, position: [0, 0, -0.1]}\n",
              bodies);
     scene_run run;
     scene_run_start(&run, text);
-    scene_run_until(&run, 2.0);
-    if (run.simulation != NULL)
+    if (run.simulation == NULL) return;
+    const scree_particles *p = &run.simulation->particles;
+    double kinetic[2];
+    for (int k = 0; k < 2; ++k)
     {
-        const scree_particles *p = &run.simulation->particles;
+        scene_run_until(&run, 1.0 + k);
         const scree_energies e = scree_simulation_energies(run.simulation);
-        printf("tower: kinetic %.3g J, top at %.6f m\n", e.kinetic + e.rotational, (double)p->position[9].z);
-        SCREE_CHECK(e.kinetic + e.rotational < 1e-7);
-        for (int k = 0; k < 10; ++k)
-        {
-            SCREE_CHECK_CLOSE(p->position[k].x, 0.002 * (k % 3), 1e-3);
-            SCREE_CHECK_CLOSE(p->position[k].z, 0.05 + 0.1 * k, 5e-3);
-        }
+        kinetic[k] = e.kinetic + e.rotational;
+    }
+    printf("tower: kinetic %.3g J after 1 s, %.3g J after 2 s, top at %.6f m\n", kinetic[0], kinetic[1],
+           (double)p->position[9].z);
+    // 25 kg that moved with the last energy at once would creep by less than 0.1 mm/s
+    SCREE_CHECK(kinetic[1] < 0.5 * 25 * 1e-8);
+    SCREE_CHECK(kinetic[1] < kinetic[0]);
+    // contact k carries 10 - k cubes: it gives way by their weight over c E* a
+    double sag = 0;
+    for (int k = 0; k < 10; ++k)
+    {
+        sag += (10 - k) * 2.5 * 9.81 / (0.7522527780636751 * 1e8 / (2 * 0.9375) * 0.1);
+        SCREE_CHECK_CLOSE(p->position[k].x, 0.002 * (k % 3), 5e-4);
+        SCREE_CHECK_CLOSE(p->position[k].z, 0.05 + 0.1 * k - sag, 0.3 * sag);
     }
     scene_run_end(&run);
 }
@@ -167,7 +184,6 @@ int main(void)
     SCREE_RUN(test_free_fall_is_a_parabola);
     SCREE_RUN(test_block_sticks_below_the_angle_of_friction);
     SCREE_RUN(test_block_slips_above_the_angle_of_friction);
-    SCREE_RUN(test_slipping_block_shows_the_friction_it_was_given);
     SCREE_RUN(test_cube_dropped_flat_comes_to_rest);
     SCREE_RUN(test_cube_dropped_on_an_edge_comes_to_rest);
     SCREE_RUN(test_cube_dropped_on_a_corner_comes_to_rest);

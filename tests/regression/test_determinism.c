@@ -16,11 +16,11 @@ static const char scene_text[] =
     "  - {name: schoenhardt, source: schoenhardt, size: [0.02, 0, 0]}\n"
     "  - {name: floor, source: box, size: [0.3, 0.3, 0.02]}\n"
     "particles:\n"
-    "  - {name: rocks, shape: rock, material: stone, count: 100, seed: 1, velocity: [0, 0, -1],\n"
+    "  - {name: rocks, shape: rock, material: stone, count: 60, seed: 1, velocity: [0, 0, -2],\n"
     "     size: {distribution: uniform, min: 0.01, max: 0.02},\n"
-    "     region: {min: [-0.1, -0.1, 0.001], max: [0.1, 0.1, 0.4]}}\n"
-    "  - {name: twisted, shape: schoenhardt, material: stone, count: 50, seed: 2, velocity: [0, 0, -3],\n"
-    "     region: {min: [-0.1, -0.1, 0.4], max: [0.1, 0.1, 0.8]}}\n"
+    "     region: {min: [-0.07, -0.07, 0.001], max: [0.07, 0.07, 0.4]}}\n"
+    "  - {name: twisted, shape: schoenhardt, material: stone, count: 40, seed: 2, velocity: [0, 0, -5],\n"
+    "     region: {min: [-0.07, -0.07, 0.4], max: [0.07, 0.07, 0.8]}}\n"
     "walls:\n"
     "  - {name: floor, shape: floor, material: stone, position: [0, 0, -0.01],\n"
     "     motion: {kind: translate, velocity: [0, 0, 0.2], start: 0.02, end: 0.05}}\n";
@@ -39,26 +39,24 @@ static uint64_t run_hash(int num_threads, bool search_always)
             if (search_always) run.simulation->buffers->has_pairs = false;
             SCREE_CHECK_INT(scree_simulation_step(run.simulation, &run.report), SCREE_OK);
         }
-        SCREE_CHECK(run.simulation->contacts.num_contacts > 50);
+        SCREE_CHECK(run.simulation->contacts.num_contacts > 30);
         hash = scree_simulation_hash(run.simulation);
     }
     scene_run_end(&run);
     return hash;
 }
 
-static void test_any_number_of_threads(void)
+static void test_same_bits_however_it_is_run(void)
 {
     const uint64_t one = run_hash(1, false);
     printf("hash rocks_and_schoenhardt %016llx\n", (unsigned long long)one);
     SCREE_CHECK(run_hash(2, false) == one);
     SCREE_CHECK(run_hash(7, false) == one);
+    SCREE_CHECK(run_hash(2, true) == one);
 }
-
-static void test_reusing_pairs_changes_nothing(void) { SCREE_CHECK(run_hash(2, true) == run_hash(2, false)); }
 
 int main(void)
 {
-    SCREE_RUN(test_any_number_of_threads);
-    SCREE_RUN(test_reusing_pairs_changes_nothing);
+    SCREE_RUN(test_same_bits_however_it_is_run);
     return SCREE_TEST_END();
 }

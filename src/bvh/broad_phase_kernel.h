@@ -145,12 +145,11 @@ typedef scree_pair_rows_args scree_pair_row_begin_args;
 
 /// Entry p of a sorted list has body `id`, the entry before it `previous` (-1 for the first one): p is the beginning
 /// of all bodies above `previous` up to `id`. The last entry also begins what follows.
-SCREE_FN void scree_pair_mark_begins(int32_t *first, int64_t p, int64_t num_pairs, int64_t previous, int64_t id,
-                                     int64_t num_bodies)
+SCREE_FN void scree_pair_mark_begins(scree_pair_rows_args a, int32_t *first, int64_t p, int64_t previous, int64_t id)
 {
     for (int64_t body = previous + 1; body <= id; ++body) first[body] = (int32_t)p;
-    if (p + 1 < num_pairs) return;
-    for (int64_t body = id + 1; body <= num_bodies; ++body) first[body] = (int32_t)num_pairs;
+    if (p + 1 < a.num_pairs) return;
+    for (int64_t body = id + 1; body <= a.num_bodies; ++body) first[body] = (int32_t)a.num_pairs;
 }
 
 /// Pair p from its key.
@@ -161,14 +160,14 @@ SCREE_FN void scree_pair_unpack_at(scree_pair_unpack_args a, int64_t p)
     a.pairs[p].j = (int32_t)(key & mask);
     a.second_keys[p] = (key & mask) << 32 | (uint64_t)p;
     const int64_t previous = p > 0 ? (int64_t)(a.keys[p - 1] >> a.id_bits) : -1;
-    scree_pair_mark_begins(a.first_as_i, p, a.num_pairs, previous, (int64_t)(key >> a.id_bits), a.num_bodies);
+    scree_pair_mark_begins(a, a.first_as_i, p, previous, (int64_t)(key >> a.id_bits));
 }
 
 /// Where the bodies begin in the sorted second keys; entry q.
 SCREE_FN void scree_pair_second_begin_at(scree_pair_second_begin_args a, int64_t q)
 {
     const int64_t previous = q > 0 ? (int64_t)(a.second_keys[q - 1] >> 32) : -1;
-    scree_pair_mark_begins(a.first_as_j, q, a.num_pairs, previous, (int64_t)(a.second_keys[q] >> 32), a.num_bodies);
+    scree_pair_mark_begins(a, a.first_as_j, q, previous, (int64_t)(a.second_keys[q] >> 32));
 }
 
 /// Where the row of a body begins; one more at the end.

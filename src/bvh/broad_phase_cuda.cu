@@ -1,0 +1,9 @@
+#include "bvh/broad_phase_kernel.h"
+#include "core/launch_cuda.cuh"
+
+SCREE_DEFINE_LAUNCH(scree_particle_pairs)
+SCREE_DEFINE_LAUNCH(scree_wall_pairs)
+SCREE_DEFINE_LAUNCH(scree_pair_unpack)
+SCREE_DEFINE_LAUNCH(scree_pair_second_begin)
+SCREE_DEFINE_LAUNCH(scree_pair_row_begin)
+SCREE_DEFINE_LAUNCH(scree_pair_rows)

@@ -177,7 +177,7 @@ static scree_status write_particles(scree_frames *frames, const scree_simulation
     {
         last = end_of_block(simulation, first, false);
         const int64_t row = first_vertex[first], num = first_vertex[last] - row;
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (num >= 16384)
         for (int64_t i = first; i < last; ++i)
             place_points(particle_shape(simulation, i), particle_pose(particles, i),
                          block + 3 * (first_vertex[i] - row));

@@ -225,6 +225,8 @@ static bool create_skeleton(const scree_vtkhdf_file *file)
     return is_done;
 }
 
+static const char steps_text[] = "steps of time: a step shows one part, from the offsets given";
+
 /// NSteps and Values, one right after the other: what changes in the file's structure with a step lies in one place.
 static bool create_times(scree_vtkhdf_file *file)
 {
@@ -234,7 +236,9 @@ static bool create_times(scree_vtkhdf_file *file)
     const hid_t space = H5Screate_simple(1, &none, &room), properties = scree_hdf5_properties(H5P_DATASET_CREATE);
     H5Pset_chunk(properties, 1, &room);
     H5Pset_alloc_time(properties, H5D_ALLOC_TIME_EARLY);
-    bool is_done = steps >= 0 && scree_hdf5_put_number(steps, "NSteps", SCREE_FIELD_INT64, &no_steps);
+    // the text fills the head of the group, so that NSteps gets a block of its own at the end, next to Values
+    bool is_done = steps >= 0 && scree_hdf5_put_text(steps, "description", steps_text) &&
+                   scree_hdf5_put_number(steps, "NSteps", SCREE_FIELD_INT64, &no_steps);
     file->values = H5Dcreate2(steps, "Values", H5T_IEEE_F64LE, space, H5P_DEFAULT, properties, H5P_DEFAULT);
     file->num_steps = H5Aopen(steps, "NSteps", H5P_DEFAULT);
     is_done = is_done && file->values >= 0 && file->num_steps >= 0;

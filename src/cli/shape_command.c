@@ -2,7 +2,7 @@
 /// scree shape: what a mesh is worth as a body. Reads or generates meshes, tells their measures or why they are
 /// refused, simplifies them, scales them, writes them.
 #include "cli/commands.h"
-#include "polyhedra/generate.h"
+#include "cli/mesh_argument.h"
 #include "polyhedra/import.h"
 #include "polyhedra/mesh_edges.h"
 #include "polyhedra/shape.h"
@@ -20,13 +20,7 @@ static const char usage[] =
     "Tells whether each mesh (OBJ, STL, PLY, OFF) can be a body, and its measures.\n"
     "Lengths are in metres, as scree takes the numbers of the file; inertia is at unit density.\n"
     "\n"
-    "  --generate SPEC   make a mesh instead of reading one; SPEC is one of\n"
-    "                      box:X:Y:Z         edge lengths\n"
-    "                      tetrahedron:R     regular, in a sphere of radius R\n"
-    "                      schoenhardt:R     twisted octahedron, in a sphere of radius R\n"
-    "                      sphere:R:N        N triangles, volume of the sphere of radius R\n"
-    "                      rock:SEED:N       irregular rock of N triangles, middle size about 1\n"
-    "                      rock:SEED:N:D     the same from a rock of D triangles instead of 1000\n"
+    "  --generate SPEC   make a mesh instead of reading one; SPEC is one of\n" SCREE_GENERATOR_HELP
     "  --simplify N      reduce to about N triangles, keeping the volume\n"
     "  --volume V        scale to the volume V [m^3] about the centroid\n"
     "  -o FILE           write the resulting mesh as OBJ (one input only)\n"
@@ -65,13 +59,6 @@ typedef struct shape_result
     int64_t euler; ///< V - E + F
     bool is_convex;
 } shape_result;
-
-static bool parse_number(const char *text, double *value)
-{
-    char *end;
-    *value = strtod(text, &end);
-    return end != text && *end == '\0' && *value - *value == 0.0;
-}
 
 static bool parse_count(const char *text, int64_t low, int64_t high, int64_t *value)
 {
@@ -118,7 +105,7 @@ static bool parse_option(shape_request *request, int argc, char **argv, int *i)
     }
     else if (strcmp(option, "--volume") == 0)
     {
-        if (parse_number(value, &request->volume) && request->volume > 0.0) return true;
+        if (scree_parse_number(value, &request->volume) && request->volume > 0.0) return true;
         fprintf(stderr, "scree shape: --volume %s: the volume [m^3] must be a number > 0\n", value);
         return false;
     }
@@ -150,57 +137,6 @@ static bool parse_command_line(shape_request *request, int argc, char **argv)
         return false;
     }
     return true;
-}
-
-/// Splits "kind:1:2:3" into its numbers; -1 if one of them is none or there are more than max_values.
-static int split_numbers(const char *text, double *values, int max_values)
-{
-    int num = 0;
-    while (*text == ':')
-    {
-        char *end;
-        if (num == max_values) return -1;
-        values[num++] = strtod(text + 1, &end);
-        if (end == text + 1) return -1;
-        text = end;
-    }
-    return *text == '\0' ? num : -1;
-}
-
-static bool is_count(double x) { return x >= 0.0 && x <= 2147483647.0 && (double)(int64_t)x == x; }
-
-static scree_status call_generator(scree_mesh *mesh, const char *kind, const double *v, int num)
-{
-    if (strcmp(kind, "box") == 0 && num == 3) return scree_generate_box(mesh, v);
-    if (strcmp(kind, "tetrahedron") == 0 && num == 1) return scree_generate_tetrahedron(mesh, v[0]);
-    if (strcmp(kind, "schoenhardt") == 0 && num == 1) return scree_generate_schoenhardt(mesh, v[0]);
-    if (strcmp(kind, "sphere") == 0 && num == 2 && is_count(v[1]))
-        return scree_generate_sphere(mesh, v[0], (int32_t)v[1]);
-    if (strcmp(kind, "rock") == 0 && (num == 2 || num == 3) && is_count(v[0]) && is_count(v[1]) &&
-        (num == 2 || is_count(v[2])))
-        return scree_generate_rock(mesh, (uint64_t)v[0], (int32_t)v[1], num == 3 ? (int32_t)v[2] : 0);
-    return SCREE_INVALID_INPUT;
-}
-
-static scree_status generate(shape_result *result)
-{
-    char kind[16];
-    double values[4];
-    const size_t length = strcspn(result->name, ":");
-    scree_status status = SCREE_INVALID_INPUT;
-    if (length < sizeof kind)
-    {
-        memcpy(kind, result->name, length);
-        kind[length] = '\0';
-        const int num = split_numbers(result->name + length, values, 4);
-        status = call_generator(&result->mesh, kind, values, num);
-    }
-    if (status == SCREE_INVALID_INPUT)
-        scree_report_add(&result->report,
-                         "%s: not a shape that can be made: box:X:Y:Z, tetrahedron:R, schoenhardt:R, sphere:R:N, "
-                         "rock:SEED:N or rock:SEED:N:D, with lengths > 0 and 4 or more triangles",
-                         result->name);
-    return status;
 }
 
 static void measure_edges(shape_result *result)
@@ -243,7 +179,8 @@ static scree_status measure(shape_result *result)
 /// Everything that is asked for one input, up to its measures and its output file.
 static void work_on(shape_result *result, const shape_request *request, bool is_generated)
 {
-    result->status = is_generated ? generate(result) : scree_mesh_import(&result->mesh, result->name, &result->report);
+    result->status = is_generated ? scree_mesh_generate(&result->mesh, result->name, &result->report)
+                                  : scree_mesh_import(&result->mesh, result->name, &result->report);
     if (result->status != SCREE_OK) return;
     if (!is_generated) result->rounding = scree_mesh_import_rounding(&result->mesh);
     if (request->num_triangles > 0 || request->volume > 0.0)

@@ -29,7 +29,7 @@ static bool reserve_pieces(scree_overlap_body *body, int32_t max)
     is_done = renew(&body->triangles, max, sizeof *body->triangles) && is_done;
     is_done = renew(&body->triangle_boxes, max, sizeof *body->triangle_boxes) && is_done;
     is_done = renew(&body->edges, 2 * (int64_t)max, sizeof *body->edges) && is_done;
-    is_done = renew(&body->edge_boxes, 2 * (int64_t)max, sizeof *body->edge_boxes) && is_done;
+    is_done = renew(&body->rows, max, sizeof *body->rows) && is_done;
     if (!is_done) return false;
     body->max_vertices = max;
     body->max_triangles = max;
@@ -112,7 +112,7 @@ void scree_overlap_workspace_destroy(scree_overlap_workspace *workspace)
         free(body->triangles);
         free(body->triangle_boxes);
         free(body->edges);
-        free(body->edge_boxes);
+        free(body->rows);
         free(body->vertex_slot);
         free(body->triangle_slot);
     }

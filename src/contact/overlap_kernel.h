@@ -159,33 +159,16 @@ SCREE_FN bool scree_overlap_filter(scree_overlap_slice *slice, const scree_overl
     return true;
 }
 
-/// Triangles and edges ready for the tests. False if there are too many.
-SCREE_FN bool scree_overlap_prepare(scree_overlap_slice *slice, const scree_overlap_pair *pair)
+/// Triangles ready for the tests of a scheme.
+SCREE_FN void scree_overlap_prepare(scree_overlap_slice *slice, scree_overlap_scheme scheme)
 {
-    for (int32_t side = 0; side < 2; ++side)
-    {
-        scree_filter_finish(slice->body + side);
-        if (scree_overlap_make_edges(slice->body + side, pair->shape[side])) continue;
-        slice->lack = SCREE_LACK_PIECES;
-        return false;
-    }
-    return true;
-}
-
-/// Crossings and inside counts. False if there are too many.
-SCREE_FN bool scree_overlap_collect(scree_overlap_slice *slice, scree_overlap_scheme scheme)
-{
-    const scree_real size = scree_max(scree_box_reach(slice->body[0].box), scree_box_reach(slice->body[1].box));
+    const scree_box a = slice->body[0].box;
+    const scree_box b = slice->body[1].box;
+    const scree_real size = scree_max(scree_box_reach(a), scree_box_reach(b));
     slice->sign_tolerance = scheme == SCREE_OVERLAP_FILTERED ? SCREE_SIGN_MARGIN * SCREE_REAL_EPSILON * size : 0;
-    slice->num_crossings = 0;
-    for (int32_t side = 0; side < 2; ++side)
-    {
-        scree_overlap_find_inside(slice, side);
-        if (scree_overlap_find_crossings(slice, side)) continue;
-        slice->lack = SCREE_LACK_CROSSINGS;
-        return false;
-    }
-    return true;
+    slice->common.lower = scree_vec3_max(a.lower, b.lower);
+    slice->common.upper = scree_vec3_min(a.upper, b.upper);
+    for (int32_t side = 0; side < 2; ++side) scree_filter_finish(slice->body + side);
 }
 
 SCREE_FN scree_overlap_result scree_overlap_nothing(scree_overlap_status status)
@@ -257,19 +240,17 @@ SCREE_FN scree_overlap_result scree_overlap_pair_compute(const scree_overlap_pai
         const bool is_full = slice->lack != SCREE_LACK_NOTHING;
         return scree_overlap_nothing(is_full ? SCREE_OVERLAP_WORKSPACE_FULL : SCREE_OVERLAP_NONE);
     }
-    if (!scree_overlap_prepare(slice, pair)) return scree_overlap_nothing(SCREE_OVERLAP_WORKSPACE_FULL);
-
     scree_overlap_sums sums;
     scree_overlap_scheme scheme = options->scheme;
     bool used_fallback = false;
     for (;;)
     {
-        if (!scree_overlap_collect(slice, scheme)) return scree_overlap_nothing(SCREE_OVERLAP_WORKSPACE_FULL);
+        scree_overlap_prepare(slice, scheme);
+        if (!scree_overlap_collect(slice, pair->shape)) return scree_overlap_nothing(SCREE_OVERLAP_WORKSPACE_FULL);
         const bool is_closed = scree_overlap_sum(slice, &sums);
         if (scheme == SCREE_OVERLAP_HIERARCHY || (is_closed && sums.residual <= SCREE_RESIDUAL_LIMIT)) break;
         scheme = SCREE_OVERLAP_HIERARCHY;
         used_fallback = true;
-        scree_overlap_forget_feet(slice);
     }
     scree_overlap_result result = scree_overlap_to_world(slice, &setup, &sums, pair->pose[0]);
     result.used_fallback = used_fallback;

@@ -18,7 +18,7 @@ typedef struct scree_overlap_triangle
     bool has_foot;
 } scree_overlap_triangle;
 
-/// An edge of which both triangles are kept; no other can cross anything or end inside.
+/// An edge between two kept triangles that may cross something or ends inside; no other does.
 typedef struct scree_overlap_edge
 {
     scree_line line; ///< lower vertex id first: every interpolation runs this way
@@ -33,6 +33,7 @@ typedef struct scree_overlap_edge
 /// A triangle that passed the filter.
 typedef struct scree_kept_triangle
 {
+    scree_box box;
     int32_t v[3]; ///< among the body's vertices here
     int32_t id;   ///< in the shape
 } scree_kept_triangle;
@@ -47,8 +48,8 @@ typedef struct scree_overlap_body
     scree_kept_triangle *kept;         ///< (max_triangles)
     scree_overlap_triangle *triangles; ///< (max_triangles) the same, those near the other body first
     scree_box *triangle_boxes;         ///< (max_triangles)
-    scree_overlap_edge *edges;         ///< (max_edges) those between two triangles near the other body first
-    scree_box *edge_boxes;             ///< (max_edges)
+    uint64_t *rows;                    ///< (max_triangles) bit t: may meet triangle t of the other's present block
+    scree_overlap_edge *edges;         ///< (max_edges)
     int32_t *vertex_slot;              ///< (max_shape_vertices) place of a kept vertex of the shape, else anything
     int32_t *triangle_slot;            ///< (max_shape_triangles) the same for triangles
     scree_box box;                     ///< of the kept triangles
@@ -56,7 +57,6 @@ typedef struct scree_overlap_body
     int32_t num_triangles, max_triangles;
     int32_t num_near_triangles; ///< can meet triangles of the other body; the rest are only for the rays
     int32_t num_edges, max_edges;
-    int32_t num_near_edges;
     int32_t num_inside; ///< vertices inside the other body
     int32_t max_shape_vertices, max_shape_triangles;
 } scree_overlap_body;
@@ -100,6 +100,7 @@ typedef struct scree_overlap_slice
     int32_t num_segments;
     int32_t max_table; ///< a power of two, at least 4 max_crossings
     scree_overlap_lack lack;
+    scree_box common;          ///< of the two boxes of kept triangles
     scree_real sign_tolerance; ///< 64 eps L, L the largest coordinate of a kept vertex; 0: hierarchy throughout
 } scree_overlap_slice;
 

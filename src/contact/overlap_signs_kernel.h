@@ -19,14 +19,17 @@ typedef enum scree_sign_verdict
     SCREE_SIGN_UNSURE = 2
 } scree_sign_verdict;
 
-/// Six times the volume of the tetrahedron of a line and side k of the face: > 0 for all three sides if the line goes
-/// against the normal through the face.
-SCREE_FN scree_real scree_line_orientation(const scree_line *line, scree_vec3 direction, const scree_face *face,
-                                           int32_t k)
+/// Height of a point over the plane of a face, times twice the face's area.
+SCREE_FN scree_real scree_face_height(const scree_face *face, scree_vec3 p)
 {
-    const scree_vec3 from = scree_vec3_sub(face->p[k], line->p[0]);
-    const scree_vec3 side = scree_vec3_sub(face->p[k == 2 ? 0 : k + 1], face->p[k]);
-    return scree_vec3_dot(from, scree_vec3_cross(direction, side));
+    return scree_vec3_dot(face->normal, scree_vec3_sub(p, face->p[0]));
+}
+
+/// Six times the volume of the tetrahedron of a line and side p q of a face: > 0 for all three sides if the line goes
+/// against the normal through the face.
+SCREE_FN scree_real scree_line_orientation(scree_vec3 start, scree_vec3 direction, scree_vec3 p, scree_vec3 q)
+{
+    return scree_vec3_dot(scree_vec3_sub(p, start), scree_vec3_cross(direction, scree_vec3_sub(q, p)));
 }
 
 /// Does the edge, of length at most `size`, pass through the triangle? `tolerance` is 64 eps L. Sets the point if so.
@@ -35,25 +38,24 @@ SCREE_FN scree_sign_verdict scree_edge_sign(const scree_line *edge, scree_real s
 {
     // heights of the ends above the plane
     const scree_real plane_margin = tolerance * g->size * g->size;
-    const scree_real h0 = scree_vec3_dot(g->normal, scree_vec3_sub(edge->p[0], g->p[0]));
-    const scree_real h1 = scree_vec3_dot(g->normal, scree_vec3_sub(edge->p[1], g->p[0]));
-    if ((h0 > plane_margin && h1 > plane_margin) || (h0 < -plane_margin && h1 < -plane_margin)) return SCREE_SIGN_APART;
-    const bool is_entering = h0 > plane_margin && h1 < -plane_margin;
-    const bool is_leaving = h0 < -plane_margin && h1 > plane_margin;
-    if (!is_entering && !is_leaving) return SCREE_SIGN_UNSURE;
+    const scree_real h0 = scree_face_height(g, edge->p[0]);
+    const scree_real h1 = scree_face_height(g, edge->p[1]);
+    const scree_real lower = scree_min(h0, h1);
+    const scree_real upper = scree_max(h0, h1);
+    if ((int32_t)(lower > plane_margin) | (int32_t)(upper < -plane_margin)) return SCREE_SIGN_APART;
+    if ((int32_t)(lower >= -plane_margin) | (int32_t)(upper <= plane_margin)) return SCREE_SIGN_UNSURE;
 
     // the line must pass all three sides on their inner side
+    const bool is_entering = h0 > h1;
     const scree_vec3 direction = scree_vec3_sub(edge->p[1], edge->p[0]);
+    const scree_real turn0 = scree_line_orientation(edge->p[0], direction, g->p[0], g->p[1]);
+    const scree_real turn1 = scree_line_orientation(edge->p[0], direction, g->p[1], g->p[2]);
+    const scree_real turn2 = scree_line_orientation(edge->p[0], direction, g->p[2], g->p[0]);
+    const scree_real inward =
+        is_entering ? scree_min(scree_min(turn0, turn1), turn2) : -scree_max(scree_max(turn0, turn1), turn2);
     const scree_real side_margin = tolerance * size * g->size;
-    bool is_unsure = false;
-    for (int32_t k = 0; k < 3; ++k)
-    {
-        const scree_real turn = scree_line_orientation(edge, direction, g, k);
-        const scree_real inward = is_entering ? turn : -turn;
-        if (inward < -side_margin) return SCREE_SIGN_APART;
-        is_unsure = is_unsure || inward <= side_margin;
-    }
-    if (is_unsure) return SCREE_SIGN_UNSURE;
+    if (inward < -side_margin) return SCREE_SIGN_APART;
+    if (inward <= side_margin) return SCREE_SIGN_UNSURE;
 
     // from the nearer end
     if (scree_abs(h0) <= scree_abs(h1)) *point = scree_vec3_add_scaled(edge->p[0], direction, h0 / (h0 - h1));

@@ -291,17 +291,6 @@ SCREE_FN bool scree_overlap_sum(scree_overlap_slice *slice, scree_overlap_sums *
     return is_closed;
 }
 
-/// Makes the kept pieces ready for sums about another middle.
-SCREE_FN void scree_overlap_forget_feet(scree_overlap_slice *slice)
-{
-    for (int32_t side = 0; side < 2; ++side)
-    {
-        scree_overlap_body *body = slice->body + side;
-        for (int32_t t = 0; t < body->num_triangles; ++t) body->triangles[t].has_foot = false;
-        for (int32_t e = 0; e < body->num_edges; ++e) body->edges[e].has_foot = false;
-    }
-}
-
 /// Extent of the collected points along n.
 SCREE_FN scree_real scree_overlap_extent_along(const scree_overlap_slice *slice, scree_vec3 middle, scree_vec3 n)
 {

@@ -90,6 +90,18 @@ SCREE_FN int32_t scree_filter_common_sides(const scree_overlap_body *body, const
     return body->outcode[v[0]] & body->outcode[v[1]] & body->outcode[v[2]];
 }
 
+/// Box of a triangle.
+SCREE_FN scree_box scree_filter_box(const scree_overlap_body *body, const int32_t *v)
+{
+    const scree_vec3 p0 = body->points[v[0]];
+    const scree_vec3 p1 = body->points[v[1]];
+    const scree_vec3 p2 = body->points[v[2]];
+    scree_box box;
+    box.lower = scree_vec3_min(scree_vec3_min(p0, p1), p2);
+    box.upper = scree_vec3_max(scree_vec3_max(p0, p1), p2);
+    return box;
+}
+
 /// Keeps triangles of a loaded body.
 SCREE_FN void scree_filter_all(scree_overlap_body *body, const scree_shape_view *shape,
                                const scree_filter_region *region)
@@ -98,10 +110,12 @@ SCREE_FN void scree_filter_all(scree_overlap_body *body, const scree_shape_view 
     int32_t num = 0;
     for (int32_t id = 0; id < shape->num_triangles; ++id)
     {
-        scree_kept_triangle *kept = body->kept + num;
-        for (int32_t k = 0; k < 3; ++k) kept->v[k] = shape->triangles[id].v[k];
+        const int32_t *v = shape->triangles[id].v;
+        if ((scree_filter_common_sides(body, v) & region->dropping) != 0) continue;
+        scree_kept_triangle *kept = body->kept + num++;
+        for (int32_t k = 0; k < 3; ++k) kept->v[k] = v[k];
         kept->id = id;
-        num += (scree_filter_common_sides(body, kept->v) & region->dropping) == 0;
+        kept->box = scree_filter_box(body, v);
     }
     body->num_triangles = num;
 }
@@ -168,8 +182,10 @@ SCREE_FN bool scree_filter_tree(scree_overlap_body *body, const scree_posed_shap
         kept->id = -1 - node->first_child;
         for (int32_t c = 0; c < 3; ++c)
             kept->v[c] = scree_filter_vertex(body, posed, region, posed->shape->triangles[kept->id].v[c]);
-        body->num_triangles += (scree_filter_common_sides(body, kept->v) & region->dropping) == 0;
         k = node->escape;
+        if ((scree_filter_common_sides(body, kept->v) & region->dropping) != 0) continue;
+        kept->box = scree_filter_box(body, kept->v);
+        ++body->num_triangles;
     }
     return true;
 }
@@ -181,19 +197,18 @@ SCREE_FN void scree_filter_again(scree_overlap_body *body, const scree_filter_re
     int32_t num = 0;
     for (int32_t t = 0; t < body->num_triangles; ++t)
     {
-        const scree_kept_triangle kept = body->kept[t];
-        body->kept[num] = kept;
-        num += (scree_filter_common_sides(body, kept.v) & region->dropping) == 0;
+        if ((scree_filter_common_sides(body, body->kept[t].v) & region->dropping) != 0) continue;
+        if (num < t) body->kept[num] = body->kept[t];
+        ++num;
     }
     body->num_triangles = num;
 }
 
-/// Box of all kept triangles.
+/// Box of all kept triangles, from the box of each.
 SCREE_FN void scree_filter_kept_box(scree_overlap_body *body)
 {
     scree_box box = scree_box_empty();
-    for (int32_t t = 0; t < body->num_triangles; ++t)
-        for (int32_t k = 0; k < 3; ++k) box = scree_box_with_point(box, body->points[body->kept[t].v[k]]);
+    for (int32_t t = 0; t < body->num_triangles; ++t) box = scree_box_union(box, body->kept[t].box);
     body->box = box;
 }
 
@@ -213,30 +228,28 @@ SCREE_FN bool scree_filter_has_room(scree_overlap_slice *slice, int32_t side, co
 /// What is derived from the corners of kept triangle `from`, written as triangle t.
 SCREE_FN void scree_filter_finish_triangle(scree_overlap_body *body, int32_t from, int32_t t)
 {
-    const scree_kept_triangle kept = body->kept[from];
+    const scree_kept_triangle *kept = body->kept + from;
     scree_overlap_triangle *triangle = body->triangles + t;
-    const scree_vec3 p0 = body->points[kept.v[0]];
-    const scree_vec3 p1 = body->points[kept.v[1]];
-    const scree_vec3 p2 = body->points[kept.v[2]];
-    triangle->id = kept.id;
-    triangle->v[0] = kept.v[0];
-    triangle->v[1] = kept.v[1];
-    triangle->v[2] = kept.v[2];
+    const scree_vec3 p0 = body->points[kept->v[0]];
+    const scree_vec3 p1 = body->points[kept->v[1]];
+    const scree_vec3 p2 = body->points[kept->v[2]];
+    triangle->id = kept->id;
+    triangle->v[0] = kept->v[0];
+    triangle->v[1] = kept->v[1];
+    triangle->v[2] = kept->v[2];
     triangle->has_foot = false;
     triangle->face.p[0] = p0;
     triangle->face.p[1] = p1;
     triangle->face.p[2] = p2;
     triangle->face.normal = scree_vec3_cross(scree_vec3_sub(p1, p0), scree_vec3_sub(p2, p0));
-    const int32_t id0 = body->vertex_id[kept.v[0]];
-    const int32_t id1 = body->vertex_id[kept.v[1]];
-    const int32_t id2 = body->vertex_id[kept.v[2]];
+    const int32_t id0 = body->vertex_id[kept->v[0]];
+    const int32_t id1 = body->vertex_id[kept->v[1]];
+    const int32_t id2 = body->vertex_id[kept->v[2]];
     triangle->face.reversed = (int32_t)(id0 > id1) | (int32_t)(id1 > id2) << 1 | (int32_t)(id2 > id0) << 2;
-    scree_box box;
-    box.lower = scree_vec3_min(scree_vec3_min(p0, p1), p2);
-    box.upper = scree_vec3_max(scree_vec3_max(p0, p1), p2);
-    body->triangle_boxes[t] = box;
+    const scree_box box = kept->box;
     triangle->face.size = box.upper.x - box.lower.x + (box.upper.y - box.lower.y) + (box.upper.z - box.lower.z);
-    body->triangle_slot[kept.id] = t;
+    body->triangle_boxes[t] = box;
+    body->triangle_slot[kept->id] = t;
 }
 
 /// Finishes all kept triangles, those that reach into all sides of the region first.

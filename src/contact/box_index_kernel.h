@@ -1,0 +1,117 @@
+/// \file box_index_kernel.h
+/// Which of up to 64 boxes may meet a query box: one word of bits from six look-ups. Each axis of a region is cut into
+/// bins; for each bin edge two words hold the boxes that start before it and those that reach beyond it. Bins are
+/// monotone in the coordinate, so no box that meets the query is missed. Few boxes are compared one by one.
+#ifndef SCREE_BOX_INDEX_KERNEL_H
+#define SCREE_BOX_INDEX_KERNEL_H
+
+#include "core/vec.h"
+
+#define SCREE_INDEX_BINS 16
+#define SCREE_INDEX_MAX 64
+/// Up to so many boxes are compared one by one.
+#define SCREE_INDEX_DIRECT 12
+
+typedef struct scree_box_index
+{
+    const scree_box *boxes;
+    int32_t num;
+    scree_vec3 origin, bins_per_length;
+    uint64_t starts[3][SCREE_INDEX_BINS];  ///< boxes whose lower bound lies in this bin or before
+    uint64_t reaches[3][SCREE_INDEX_BINS]; ///< boxes whose upper bound lies in this bin or beyond
+} scree_box_index;
+
+/// Number of the lowest bit that is set; word is not 0.
+SCREE_FN int32_t scree_lowest_bit(uint64_t word)
+{
+#ifdef __CUDA_ARCH__
+    return __ffsll((long long)word) - 1;
+#else
+    return __builtin_ctzll(word);
+#endif
+}
+
+SCREE_FN int32_t scree_index_bin(scree_real x, scree_real origin, scree_real bins_per_length)
+{
+    const scree_real bin = (x - origin) * bins_per_length;
+    return bin >= SCREE_INDEX_BINS - 1 ? SCREE_INDEX_BINS - 1 : bin > 0 ? (int32_t)bin : 0;
+}
+
+SCREE_FN scree_real scree_index_scale(scree_real lower, scree_real upper)
+{
+    const scree_real scale = SCREE_INDEX_BINS / (upper - lower);
+    return upper > lower && scale < SCREE_REAL_MAX ? scale : 0;
+}
+
+/// Enters bounds [lower, upper] of box i along one axis.
+SCREE_FN void scree_index_enter(scree_box_index *index, int32_t axis, int32_t i, int32_t first, int32_t last)
+{
+    index->starts[axis][first] |= (uint64_t)1 << i;
+    index->reaches[axis][last] |= (uint64_t)1 << i;
+}
+
+/// Index of `num` boxes, at most SCREE_INDEX_MAX, best told apart within `region`. The boxes are borrowed.
+SCREE_FN void scree_index_build(scree_box_index *index, const scree_box *boxes, int32_t num, scree_box region)
+{
+    index->boxes = boxes;
+    index->num = num;
+    if (num <= SCREE_INDEX_DIRECT) return;
+    const scree_vec3 o = region.lower;
+    const scree_vec3 s = scree_vec3_make(scree_index_scale(o.x, region.upper.x), scree_index_scale(o.y, region.upper.y),
+                                         scree_index_scale(o.z, region.upper.z));
+    index->origin = o;
+    index->bins_per_length = s;
+    for (int32_t axis = 0; axis < 3; ++axis)
+    {
+        for (int32_t k = 0; k < SCREE_INDEX_BINS; ++k)
+        {
+            index->starts[axis][k] = 0;
+            index->reaches[axis][k] = 0;
+        }
+    }
+    for (int32_t i = 0; i < num; ++i)
+    {
+        const scree_vec3 l = boxes[i].lower;
+        const scree_vec3 u = boxes[i].upper;
+        scree_index_enter(index, 0, i, scree_index_bin(l.x, o.x, s.x), scree_index_bin(u.x, o.x, s.x));
+        scree_index_enter(index, 1, i, scree_index_bin(l.y, o.y, s.y), scree_index_bin(u.y, o.y, s.y));
+        scree_index_enter(index, 2, i, scree_index_bin(l.z, o.z, s.z), scree_index_bin(u.z, o.z, s.z));
+    }
+    for (int32_t axis = 0; axis < 3; ++axis)
+    {
+        for (int32_t k = 1; k < SCREE_INDEX_BINS; ++k)
+        {
+            const int32_t back = SCREE_INDEX_BINS - 1 - k;
+            index->starts[axis][k] |= index->starts[axis][k - 1];
+            index->reaches[axis][back] |= index->reaches[axis][back + 1];
+        }
+    }
+}
+
+/// Bits of the boxes that may meet the query; all that do are among them.
+SCREE_FN uint64_t scree_index_query(const scree_box_index *index, scree_box query)
+{
+    uint64_t found = 0;
+    if (index->num <= SCREE_INDEX_DIRECT)
+    {
+        for (int32_t i = 0; i < index->num; ++i)
+        {
+            const scree_box *box = index->boxes + i;
+            const int32_t meets = (int32_t)(box->lower.x <= query.upper.x) & (int32_t)(query.lower.x <= box->upper.x) &
+                                  (int32_t)(box->lower.y <= query.upper.y) & (int32_t)(query.lower.y <= box->upper.y) &
+                                  (int32_t)(box->lower.z <= query.upper.z) & (int32_t)(query.lower.z <= box->upper.z);
+            found |= (uint64_t)meets << i;
+        }
+        return found;
+    }
+    const scree_vec3 o = index->origin;
+    const scree_vec3 s = index->bins_per_length;
+    return index->starts[0][scree_index_bin(query.upper.x, o.x, s.x)] &
+           index->reaches[0][scree_index_bin(query.lower.x, o.x, s.x)] &
+           index->starts[1][scree_index_bin(query.upper.y, o.y, s.y)] &
+           index->reaches[1][scree_index_bin(query.lower.y, o.y, s.y)] &
+           index->starts[2][scree_index_bin(query.upper.z, o.z, s.z)] &
+           index->reaches[2][scree_index_bin(query.lower.z, o.z, s.z)];
+}
+
+#endif

@@ -113,23 +113,39 @@ typedef struct checked_value
 {
     const scree_scene_section *section;
     int key;
-    const char *label; ///< "density of materials.0"
+    const char *path; ///< of the section the key is in: "materials.0"; "" for the scene
     scree_yaml_node *node;
-    bool is_item; ///< one of a list of numbers or names
+    int64_t item; ///< number in a list of numbers or names; -1: the whole value
 } checked_value;
+
+/// "density of materials.0", "position.2 of particles.0.bodies.1"
+typedef struct value_label
+{
+    char text[SCREE_SCENE_PATH_SIZE + 100];
+} value_label;
+
+static value_label label_of(checked_value v)
+{
+    value_label label;
+    char item[24] = "";
+    if (v.item >= 0) snprintf(item, sizeof item, ".%lld", (long long)v.item);
+    snprintf(label.text, sizeof label.text, "%s%s%s%.319s", v.section->keys[v.key].name, item,
+             v.path[0] == '\0' ? "" : " of ", v.path);
+    return label;
+}
 
 /// "LABEL is VALUE; it must be WHAT"
 static void refuse(scree_scene_reader *reader, checked_value v)
 {
     char shown[100], allowed[800];
     scree_scene_show(v.node, shown, sizeof shown);
-    if (v.is_item) scree_scene_describe_item(v.section, v.key, allowed, sizeof allowed);
+    if (v.item >= 0) scree_scene_describe_item(v.section, v.key, allowed, sizeof allowed);
     else scree_scene_describe(v.section, v.key, allowed, sizeof allowed);
-    const bool has_default = v.section->keys[v.key].default_text != NULL && !v.is_item;
+    const bool has_default = v.section->keys[v.key].default_text != NULL && v.item < 0;
     if (scree_yaml_is_null(v.node))
-        scree_scene_fault(reader, v.node, "%s has no value; it must be %s%s", v.label, allowed,
+        scree_scene_fault(reader, v.node, "%s has no value; it must be %s%s", label_of(v).text, allowed,
                           has_default ? ", or the key be left out" : "");
-    else scree_scene_fault(reader, v.node, "%s is %s; it must be %s", v.label, shown, allowed);
+    else scree_scene_fault(reader, v.node, "%s is %s; it must be %s", label_of(v).text, shown, allowed);
     v.node->is_refused = true;
 }
 
@@ -192,7 +208,7 @@ static void refuse_word(scree_scene_reader *reader, checked_value v)
     char shown[100], allowed[800];
     scree_scene_show(v.node, shown, sizeof shown);
     scree_scene_describe(v.section, v.key, allowed, sizeof allowed);
-    scree_scene_fault(reader, v.node, "%s is %s; it must be %s; did you mean \"%s\"?", v.label, shown, allowed,
+    scree_scene_fault(reader, v.node, "%s is %s; it must be %s; did you mean \"%s\"?", label_of(v).text, shown, allowed,
                       nearest);
     v.node->is_refused = true;
 }
@@ -276,14 +292,9 @@ static void check_fixed_list(scree_scene_reader *reader, checked_value v)
     }
     for (int64_t k = 0; k < v.node->num_items; ++k)
     {
-        char label[SCREE_SCENE_PATH_SIZE + 300];
-        const char *of = strstr(v.label, " of ");
-        const int length = of == NULL ? (int)strlen(v.label) : (int)(of - v.label);
-        snprintf(label, sizeof label, "%.*s.%lld%s", length, v.label, (long long)k, of == NULL ? "" : of);
         checked_value item = v;
-        item.label = label;
         item.node = v.node->items[k];
-        item.is_item = true;
+        item.item = k;
         if (value->sequence.entry->type == CYAML_STRING) check_text(reader, item);
         else check_number(reader, item);
         v.node->is_refused |= item.node->is_refused;
@@ -350,7 +361,7 @@ scree_yaml_node *scree_scene_default(scree_scene_reader *reader, const scree_sce
     return node;
 }
 
-/// Value for a key that was left out; NULL if it must be given, or there is no memory.
+/// New value for a key that was left out; NULL if it must be given, or there is no memory.
 static scree_yaml_node *fill_in(scree_scene_reader *reader, checked_value v, scree_scene_shared_nodes *shared)
 {
     const scree_scene_key *key = v.section->keys + v.key;
@@ -358,19 +369,16 @@ static scree_yaml_node *fill_in(scree_scene_reader *reader, checked_value v, scr
     {
         char allowed[800];
         scree_scene_describe(v.section, v.key, allowed, sizeof allowed);
-        scree_scene_fault(reader, v.node, "%s is missing; it must be %s", v.label, allowed);
+        scree_scene_fault(reader, v.node, "%s is missing; it must be %s", label_of(v).text, allowed);
         return NULL;
     }
-    if (shared->defaults[v.key] != NULL) return shared->defaults[v.key];
     scree_yaml_node *node = scree_scene_default(reader, v.section, v.key);
     if (node == NULL) return NULL;
     node->line = v.node->line;
     node->source = v.node->source;
-    // what a fault in a default would point to differs from section to section, so those that can be changed are not
-    // shared
+    // sections and lists of sections are filled in further, so each gets its own
     const enum cyaml_type type = v.section->fields[v.key].value.type;
-    if (type != CYAML_MAPPING && type != CYAML_SEQUENCE && strcmp(v.section->title, "output") != 0)
-        shared->defaults[v.key] = node;
+    if (type != CYAML_MAPPING && type != CYAML_SEQUENCE) shared->defaults[v.key] = node;
     return node;
 }
 
@@ -378,7 +386,7 @@ static void check_section(scree_scene_reader *reader, scree_yaml_node *node, con
                           const char *path);
 
 /// A list of sections.
-static void check_list(scree_scene_reader *reader, checked_value v, const char *path)
+static void check_list(scree_scene_reader *reader, checked_value v)
 {
     const scree_scene_key *key = v.section->keys + v.key;
     if (v.node->kind != SCREE_YAML_LIST)
@@ -388,7 +396,7 @@ static void check_list(scree_scene_reader *reader, checked_value v, const char *
     }
     if ((double)v.node->num_items > key->max)
     {
-        scree_scene_fault(reader, v.node, "%s has %lld items; at most %.17g are possible", v.label,
+        scree_scene_fault(reader, v.node, "%s has %lld items; at most %.17g are possible", label_of(v).text,
                           (long long)v.node->num_items, key->max);
         v.node->is_refused = true;
         return;
@@ -396,13 +404,15 @@ static void check_list(scree_scene_reader *reader, checked_value v, const char *
     for (int64_t k = 0; k < v.node->num_items && !reader->is_exhausted; ++k)
     {
         char item_path[SCREE_SCENE_PATH_SIZE];
-        snprintf(item_path, sizeof item_path, "%.250s.%lld", path, (long long)k);
+        snprintf(item_path, sizeof item_path, "%.200s%s%s.%lld", v.path, v.path[0] == '\0' ? "" : ".", key->name,
+                 (long long)k);
         check_section(reader, v.node->items[k], key->section, item_path);
     }
 }
 
-static void check_value(scree_scene_reader *reader, checked_value v, const char *path)
+static void check_value(scree_scene_reader *reader, checked_value v)
 {
+    char path[SCREE_SCENE_PATH_SIZE];
     switch (v.section->fields[v.key].value.type)
     {
     case CYAML_FLOAT:
@@ -424,10 +434,11 @@ static void check_value(scree_scene_reader *reader, checked_value v, const char 
         check_fixed_list(reader, v);
         break;
     case CYAML_MAPPING:
+        snprintf(path, sizeof path, "%.250s%s%s", v.path, v.path[0] == '\0' ? "" : ".", v.section->keys[v.key].name);
         check_section(reader, v.node, v.section->keys[v.key].section, path);
         break;
     default:
-        check_list(reader, v, path);
+        check_list(reader, v);
         break;
     }
 }
@@ -508,14 +519,14 @@ static void check_section(scree_scene_reader *reader, scree_yaml_node *node, con
     sort_keys(reader, node, section, path, values);
     for (int k = 0; k < section->num_keys && !reader->is_exhausted; ++k)
     {
-        char label[SCREE_SCENE_PATH_SIZE + 100], child_path[SCREE_SCENE_PATH_SIZE];
-        const char *name = section->keys[k].name;
-        if (path[0] == '\0') snprintf(label, sizeof label, "%s", name);
-        else snprintf(label, sizeof label, "%s of %s", name, path);
-        snprintf(child_path, sizeof child_path, "%.250s%s%s", path, path[0] == '\0' ? "" : ".", name);
-        if (values[k] == NULL) values[k] = fill_in(reader, (checked_value){section, k, label, node, false}, shared);
+        if (values[k] == NULL && shared->defaults[k] != NULL)
+        {
+            values[k] = shared->defaults[k]; // was checked when it was made
+            continue;
+        }
+        if (values[k] == NULL) values[k] = fill_in(reader, (checked_value){section, k, path, node, -1}, shared);
         if (values[k] == NULL) continue;
-        check_value(reader, (checked_value){section, k, label, values[k], false}, child_path);
+        check_value(reader, (checked_value){section, k, path, values[k], -1});
         mark_default(values[k], section->keys + k);
     }
     node->keys = shared->keys;

@@ -13,8 +13,8 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/// More than this is not a scene that somebody wrote.
-#define MAX_FILE_SIZE (16 * 1024 * 1024)
+/// Room for a scene of hundreds of thousands of bodies with every default filled in; more is a slip.
+#define MAX_FILE_SIZE (64 * 1024 * 1024)
 
 static const cyaml_config_t cyaml_settings = {.mem_fn = cyaml_mem, .flags = CYAML_CFG_DEFAULT};
 

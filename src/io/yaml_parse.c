@@ -9,8 +9,10 @@
 
 /// Scenes are shallow; what is deeper is an alias inside its own anchor, or no scene.
 #define MAX_DEPTH 32
-/// Aliases of lists of aliases can ask for any number of values.
-#define MAX_NODES 5000000
+/// Aliases of lists of aliases can ask for any number of values, an alias of a long text for any number of bytes. So
+/// many values are allowed, and two for each byte of text, which no text without aliases needs; a value that is a long
+/// text counts for several.
+#define MAX_VALUES 100000
 
 typedef struct tree_reader
 {
@@ -18,6 +20,7 @@ typedef struct tree_reader
     const scree_yaml_text *text;
     yaml_document_t *document;
     scree_report *report;
+    int64_t num_values;  ///< so far
     scree_status status; ///< the first thing that went wrong
 } tree_reader;
 
@@ -118,14 +121,16 @@ static scree_yaml_node *read_node(tree_reader *reader, int id, int depth)
 {
     const yaml_node_t *from = yaml_document_get_node(reader->document, id);
     const int64_t line = from == NULL ? 0 : (int64_t)from->start_mark.line + 1;
-    if (depth > MAX_DEPTH || reader->tree->num_nodes >= MAX_NODES)
+    if (depth > MAX_DEPTH || reader->num_values > MAX_VALUES + 2 * (int64_t)reader->text->length)
     {
-        scree_report_add(reader->report,
-                         depth > MAX_DEPTH
-                             ? "%s:%lld: more than %d levels inside each other; is an alias inside its own anchor?"
-                             : "%s:%lld: more than %d values; fill a region instead of listing bodies, and use fewer "
-                               "aliases",
-                         reader->text->name, (long long)line, depth > MAX_DEPTH ? MAX_DEPTH : MAX_NODES);
+        const char *name = reader->text->name;
+        if (depth > MAX_DEPTH)
+            scree_report_add(reader->report,
+                             "%s:%lld: more than %d levels inside each other; is an alias inside its own anchor?", name,
+                             (long long)line, MAX_DEPTH);
+        else
+            scree_report_add(reader->report, "%s:%lld: aliases make more than %lld values of this text; use fewer",
+                             name, (long long)line, (long long)reader->num_values - 1);
         reader->status = SCREE_INVALID_INPUT;
         return NULL;
     }
@@ -134,6 +139,7 @@ static scree_yaml_node *read_node(tree_reader *reader, int id, int depth)
                                  : from->type == YAML_SEQUENCE_NODE ? SCREE_YAML_LIST
                                                                     : SCREE_YAML_SECTION;
     const char *value = is_scalar && from != NULL ? (const char *)from->data.scalar.value : "";
+    reader->num_values += 1 + (int64_t)(strlen(value) / 8);
     scree_yaml_node *node = scree_yaml_add(reader->tree, kind, value);
     if (node == NULL)
     {
@@ -165,7 +171,7 @@ static scree_status read_documents(yaml_parser_t *parser, const scree_yaml_text 
         yaml_document_delete(&document);
         return SCREE_OK;
     }
-    tree_reader reader = {tree, text, &document, report, SCREE_OK};
+    tree_reader reader = {tree, text, &document, report, 0, SCREE_OK};
     *root = read_node(&reader, 1, 0);
     yaml_document_delete(&document);
     if (reader.status != SCREE_OK) return reader.status;

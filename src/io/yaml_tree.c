@@ -56,7 +56,6 @@ scree_yaml_node *scree_yaml_add(scree_yaml_tree *tree, scree_yaml_kind kind, con
         memcpy(copy, text, size);
         node->text = copy;
     }
-    ++tree->num_nodes;
     return node;
 }
 

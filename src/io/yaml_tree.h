@@ -33,7 +33,6 @@ typedef struct scree_yaml_node
 typedef struct scree_yaml_tree
 {
     struct scree_yaml_block *blocks;
-    int64_t num_nodes;
 } scree_yaml_tree;
 
 /// A text to read.

@@ -127,7 +127,7 @@ def test_files_that_cannot_be_read(tmp_path):
     with large.open("wb") as stream:
         stream.truncate(100_000_000)
     result = scree("check", large)
-    assert result.returncode == 2 and "more than 16 MB" in result.stderr
+    assert result.returncode == 2 and "more than 64 MB" in result.stderr
 
 
 @pytest.mark.parametrize(

@@ -10,8 +10,8 @@
 SCREE_DECLARE_LAUNCH(scree_lbvh_bounds)     ///< over chunks of boxes
 SCREE_DECLARE_LAUNCH(scree_lbvh_codes)      ///< over boxes
 SCREE_DECLARE_LAUNCH(scree_lbvh_hierarchy)  ///< over inner nodes
-SCREE_DECLARE_LAUNCH(scree_lbvh_left_turns) ///< over leaves
-SCREE_DECLARE_LAUNCH(scree_lbvh_nodes)      ///< over leaves
+SCREE_DECLARE_LAUNCH(scree_lbvh_left_turns) ///< over blocks of leaves
+SCREE_DECLARE_LAUNCH(scree_lbvh_nodes)      ///< over blocks of leaves
 
 SCREE_DECLARE_LAUNCH(scree_particle_pairs)    ///< over nodes
 SCREE_DECLARE_LAUNCH(scree_wall_pairs)        ///< over blocks of particles

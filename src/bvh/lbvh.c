@@ -105,7 +105,7 @@ scree_status scree_lbvh_build(scree_lbvh *tree, const scree_box *boxes, int64_t 
     args.codes = b->sort.keys;
     args.items = b->sort.values;
     scree_lbvh_hierarchy_launch(args, num_boxes - 1);
-    scree_lbvh_left_turns_launch(args, num_boxes);
+    scree_lbvh_left_turns_launch(args, count_blocks(num_boxes));
     scree_lbvh_nodes_launch(args, count_blocks(num_boxes));
     return SCREE_OK;
 }

@@ -35,7 +35,7 @@ typedef struct scree_lbvh_build_args
     scree_lbvh_node *nodes;  ///< (2 num_leaves - 1)
     scree_box *chunk_bounds; ///< (SCREE_LBVH_BOUNDS_CHUNKS)
     int64_t num_leaves;
-    int64_t block_leaves; ///< sorted leaves per call of the last pass
+    int64_t block_leaves; ///< sorted leaves per call of the last two passes
     scree_morton_frame frame;
 } scree_lbvh_build_args;
 
@@ -99,15 +99,26 @@ SCREE_FN void scree_lbvh_hierarchy_at(scree_lbvh_hierarchy_args a, int64_t i)
     a.last_leaf[split] = (int32_t)(direction > 0 ? other : i);
 }
 
-/// How often the way from the root to sorted leaf r turns left. In the depth-first order of a binary tree the nodes
-/// before the one over leaves l .. r are l leaves, l inner nodes with splits below l, and those ancestors in whose left
-/// half it lies, one for each left turn: it is node 2 l + left turns. All nodes that end with leaf r make the same
-/// left turns, and one more than those that end with the last leaf of the node with split r.
-SCREE_FN void scree_lbvh_left_turns_at(scree_lbvh_left_turns_args a, int64_t r)
+/// How often the way from the root to each leaf of a block turns left. In the depth-first order of a binary tree the
+/// nodes before the one over leaves l .. r are l leaves, l inner nodes with splits below l, and those ancestors in
+/// whose left half it lies, one for each left turn: it is node 2 l + left turns. All nodes that end with leaf r make
+/// the same left turns, one more than those that end with the last leaf of the node with split r.
+SCREE_FN void scree_lbvh_left_turns_at(scree_lbvh_left_turns_args a, int64_t block)
 {
-    int32_t num = 0;
-    for (int64_t end = r; end + 1 < a.num_leaves; end = a.last_leaf[end]) ++num;
-    a.num_left_turns[r] = (uint8_t)num;
+    const int64_t begin = block * a.block_leaves;
+    const int64_t end = begin + a.block_leaves < a.num_leaves ? begin + a.block_leaves : a.num_leaves;
+    for (int64_t r = end - 1; r >= begin; --r)
+    {
+        // leaf by leaf to one of this block, whose number is known, or to the last one of all, which makes none
+        int32_t num = 0;
+        int64_t leaf = r;
+        while (leaf + 1 < a.num_leaves && (leaf == r || leaf >= end))
+        {
+            leaf = a.last_leaf[leaf];
+            ++num;
+        }
+        a.num_left_turns[r] = (uint8_t)(leaf > r && leaf < end ? num + a.num_left_turns[leaf] : num);
+    }
 }
 
 /// Place of the node over sorted leaves first .. last.

@@ -100,8 +100,9 @@ static void check_hierarchy(scree_lbvh_build_args args)
         args.block_leaves = block_leaves[order];
         memset(args.nodes, 0, (size_t)(2 * n - 1) * sizeof *args.nodes);
         SCREE_LAUNCH_IN_ORDER(scree_lbvh_hierarchy, args, n - 1, order);
-        SCREE_LAUNCH_IN_ORDER(scree_lbvh_left_turns, args, n, order);
-        SCREE_LAUNCH_IN_ORDER(scree_lbvh_nodes, args, (n + args.block_leaves - 1) / args.block_leaves, order);
+        const int64_t num_blocks = (n + args.block_leaves - 1) / args.block_leaves;
+        SCREE_LAUNCH_IN_ORDER(scree_lbvh_left_turns, args, num_blocks, order);
+        SCREE_LAUNCH_IN_ORDER(scree_lbvh_nodes, args, num_blocks, order);
         SCREE_CHECK(memcmp(args.nodes, expected, (size_t)(2 * n - 1) * sizeof *expected) == 0);
         for (int64_t r = 0; r < n; ++r)
             if (args.arrivals[r] != 0) SCREE_CHECK_INT(args.arrivals[r], 0);

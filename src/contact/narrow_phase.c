@@ -1,7 +1,18 @@
 #include "contact/narrow_phase.h"
 
+#include "contact/separating_direction_kernel.h"
+
 #include <omp.h>
 #include <stdlib.h>
+#include <string.h>
+
+/// What is remembered of a candidate pair from step to step.
+typedef struct pair_memory
+{
+    scree_vec3 direction;   ///< that separated it last time, or zero
+    scree_real apart_until; ///< [m] sum of the travels of both bodies up to which it cannot touch
+    bool was_touching;      ///< at the last look
+} pair_memory;
 
 /// Results of the pairs before they are compacted into the list.
 struct scree_narrow_phase_buffers
@@ -11,6 +22,8 @@ struct scree_narrow_phase_buffers
     int num_workspaces;
     scree_overlap_result *results; ///< (max_pairs, max_results)
     int32_t *num_results;          ///< (max_pairs) as computed, may exceed max_results
+    pair_memory *memory;           ///< (max_pairs)
+    int64_t num_remembered;        ///< pairs whose memory holds; 0: none
     int64_t max_pairs;
     int32_t max_results; ///< per pair
 };
@@ -25,6 +38,7 @@ void scree_narrow_phase_destroy(scree_narrow_phase *narrow_phase)
         free(b->counts);
         free(b->results);
         free(b->num_results);
+        free(b->memory);
         free(b);
     }
     *narrow_phase = (scree_narrow_phase){0};
@@ -56,19 +70,39 @@ static scree_status reserve_results(struct scree_narrow_phase_buffers *b, int64_
     if (max_results < b->max_results) max_results = b->max_results;
     scree_overlap_result *results = malloc((size_t)max_pairs * (size_t)max_results * sizeof *results);
     int32_t *num_results = malloc((size_t)max_pairs * sizeof *num_results);
-    if (results == NULL || num_results == NULL)
+    pair_memory *memory = malloc((size_t)max_pairs * sizeof *memory);
+    if (results == NULL || num_results == NULL || memory == NULL)
     {
         free(results);
         free(num_results);
+        free(memory);
         return SCREE_OUT_OF_MEMORY;
     }
     free(b->results);
     free(b->num_results);
+    free(b->memory);
     b->results = results;
     b->num_results = num_results;
+    b->memory = memory;
+    b->num_remembered = 0;
     b->max_pairs = max_pairs;
     b->max_results = max_results;
     return SCREE_OK;
+}
+
+/// Is the pair known to be apart, or found to be so now? The answer is proven, never a guess.
+static bool is_apart(const scree_bodies *bodies, scree_candidate_pair pair, pair_memory *memory)
+{
+    const scree_real travelled = bodies->travel[pair.i] + bodies->travel[pair.j];
+    if (travelled < memory->apart_until) return true;
+    // contacts mostly last; the search would be in vain
+    if (memory->was_touching) return false;
+    const scree_real gap =
+        scree_separation_search(bodies->shapes + bodies->shape[pair.i], bodies->pose + pair.i,
+                                bodies->shapes + bodies->shape[pair.j], bodies->pose + pair.j, &memory->direction);
+    // a hair less, for the rounding of the travels
+    memory->apart_until = travelled + gap * (scree_real)0.999;
+    return gap > 0;
 }
 
 /// One candidate pair: overlap, as often as the workspace has to grow, and the counts of this thread.
@@ -77,6 +111,8 @@ static scree_status find_pair(scree_narrow_phase *narrow_phase, const scree_bodi
 {
     struct scree_narrow_phase_buffers *b = narrow_phase->buffers;
     scree_overlap_result *results = b->results + p * b->max_results;
+    b->num_results[p] = 0;
+    if (is_apart(bodies, pair, b->memory + p)) return SCREE_OK;
     const scree_shape_view *shape_i = bodies->shapes + bodies->shape[pair.i];
     const scree_shape_view *shape_j = bodies->shapes + bodies->shape[pair.j];
     int32_t num;
@@ -89,6 +125,7 @@ static scree_status find_pair(scree_narrow_phase *narrow_phase, const scree_bodi
     }
     scree_narrow_phase_counts *counts = b->counts + thread;
     b->num_results[p] = num;
+    b->memory[p].was_touching = num > 0 && results[0].status != SCREE_OVERLAP_NONE;
     for (int32_t r = 0; r < num && r < b->max_results; ++r)
     {
         counts->num_without_normal += results[r].status == SCREE_OVERLAP_NO_NORMAL;
@@ -100,11 +137,18 @@ static scree_status find_pair(scree_narrow_phase *narrow_phase, const scree_bodi
     return SCREE_OK;
 }
 
+void scree_narrow_phase_forget(scree_narrow_phase *narrow_phase)
+{
+    if (narrow_phase->buffers != NULL) narrow_phase->buffers->num_remembered = -1;
+}
+
 static scree_status find_all(scree_narrow_phase *narrow_phase, const scree_bodies *bodies,
                              const scree_candidate_pair *pairs, int64_t num_pairs)
 {
     struct scree_narrow_phase_buffers *b = narrow_phase->buffers;
     for (int t = 0; t < b->num_workspaces; ++t) b->counts[t] = (scree_narrow_phase_counts){0};
+    if (b->num_remembered != num_pairs) memset(b->memory, 0, (size_t)num_pairs * sizeof *b->memory);
+    b->num_remembered = num_pairs;
     int has_failed = 0;
 #pragma omp parallel for schedule(dynamic, 8) reduction(| : has_failed) if (num_pairs >= 16)
     for (int64_t p = 0; p < num_pairs; ++p)

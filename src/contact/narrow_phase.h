@@ -1,5 +1,7 @@
 /// \file narrow_phase.h
 /// Candidate pairs to contacts: separation test, overlap, compaction into the sorted contact list.
+/// A pair that was found apart by a gap is skipped until its bodies may have travelled that far; one that did not touch
+/// is asked along its last separating direction first. Neither changes a bit of the result.
 #ifndef SCREE_NARROW_PHASE_H
 #define SCREE_NARROW_PHASE_H
 
@@ -12,6 +14,7 @@ typedef struct scree_bodies
     const scree_shape_view *shapes; ///< all shapes
     const int32_t *shape;           ///< (num_bodies) index into shapes
     const scree_pose *pose;         ///< (num_bodies)
+    const scree_real *travel;       ///< [m] (num_bodies) bound of the way of any of its points since the last search
     int64_t num_bodies;
 } scree_bodies;
 
@@ -31,6 +34,9 @@ typedef struct scree_narrow_phase
     scree_narrow_phase_counts counts;           ///< of the last search
     struct scree_narrow_phase_buffers *buffers; ///< internal
 } scree_narrow_phase;
+
+/// Forgets what is known of the pairs; call when the candidate pairs have changed.
+void scree_narrow_phase_forget(scree_narrow_phase *narrow_phase);
 
 /// Finds the contacts of all candidate pairs and writes the geometry of `list`; forces and history are left alone.
 /// Same list for any number of threads. SCREE_OUT_OF_MEMORY.

@@ -48,6 +48,7 @@ scree_status scree_update_contacts(scree_simulation *simulation)
     bodies.shapes = simulation->shape_views;
     bodies.shape = b->shape;
     bodies.pose = b->pose;
+    bodies.travel = b->travel;
     bodies.num_bodies = simulation->particles.num_particles + simulation->num_walls;
     scree_status status = scree_narrow_phase_find(&simulation->narrow_phase, &bodies, broad_phase->pairs,
                                                   broad_phase->num_pairs, &simulation->contacts);

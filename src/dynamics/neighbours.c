@@ -31,9 +31,24 @@ static bool is_search_due(const scree_simulation *s)
     return !(largest_displacement(s, 0, num) + largest_displacement(s, num, num + s->num_walls) <= b->skin);
 }
 
+/// Adds the way of this step to the travels of all bodies.
+static void add_travel(scree_simulation *s)
+{
+    scree_step_buffers *b = s->buffers;
+    const int64_t num_bodies = s->particles.num_particles + s->num_walls;
+#pragma omp parallel for schedule(static) if (num_bodies >= 1024)
+    for (int64_t i = 0; i < num_bodies; ++i)
+    {
+        const scree_real radius = s->shape_views[b->shape[i]].bounding_radius * b->pose[i].scale;
+        b->travel[i] += scree_displacement(b->last_pose[i], b->pose[i], radius);
+        b->last_pose[i] = b->pose[i];
+    }
+}
+
 scree_status scree_update_neighbours(scree_simulation *simulation)
 {
     scree_step_buffers *b = simulation->buffers;
+    add_travel(simulation);
     if (!is_search_due(simulation)) return SCREE_OK;
     const int64_t num_particles = simulation->particles.num_particles;
 
@@ -64,6 +79,8 @@ scree_status scree_update_neighbours(scree_simulation *simulation)
     const scree_status status = scree_broad_phase_find(&simulation->broad_phase, &input);
     if (status != SCREE_OK) return status;
 
+    scree_narrow_phase_forget(&simulation->narrow_phase);
+    memset(b->travel, 0, (size_t)(num_particles + simulation->num_walls) * sizeof *b->travel);
     memcpy(b->searched_pose, b->pose, (size_t)(num_particles + simulation->num_walls) * sizeof *b->pose);
     b->has_pairs = true;
     b->is_old_list_of_same_pairs = false;

@@ -20,6 +20,8 @@ scree_status scree_step_buffers_create(scree_simulation *simulation)
     SCREE_ALLOCATE(shape, num_bodies)
     SCREE_ALLOCATE(material, num_bodies)
     SCREE_ALLOCATE(searched_pose, num_bodies)
+    SCREE_ALLOCATE(last_pose, num_bodies)
+    SCREE_ALLOCATE(travel, num_bodies)
     SCREE_ALLOCATE(boxes, num_particles)
     SCREE_ALLOCATE(centres, num_particles)
     SCREE_ALLOCATE(radii, num_particles)
@@ -52,6 +54,8 @@ void scree_step_buffers_destroy(scree_simulation *simulation)
     free(b->shape);
     free(b->material);
     free(b->searched_pose);
+    free(b->last_pose);
+    free(b->travel);
     free(b->boxes);
     free(b->centres);
     free(b->radii);

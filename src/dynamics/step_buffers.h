@@ -17,10 +17,12 @@ typedef struct scree_step_buffers
     int32_t *material;
 
     // neighbours
-    scree_pose *searched_pose;                 ///< (num_bodies) poses of the last search
-    scree_box *boxes;                          ///< (num_particles)
-    scree_vec3 *centres;                       ///< (num_particles)
-    scree_real *radii;                         ///< (num_particles)
+    scree_pose *searched_pose; ///< (num_bodies) poses of the last search
+    scree_pose *last_pose;     ///< (num_bodies) poses of the last step
+    scree_real *travel;        ///< [m] (num_bodies) bound of the way of any point of the body since the last search
+    scree_box *boxes;          ///< (num_particles)
+    scree_vec3 *centres;       ///< (num_particles)
+    scree_real *radii;         ///< (num_particles)
     scree_broad_phase_wall *broad_phase_walls; ///< (num_walls)
     scree_real skin;                           ///< [m]
     bool has_pairs;                            ///< false: search before the next step

@@ -5,7 +5,7 @@ set(CMAKE_C_EXTENSIONS OFF)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 
 if(NOT CMAKE_BUILD_TYPE)
-    set(CMAKE_BUILD_TYPE Release CACHE STRING "Release, Debug or Checked" FORCE)
+    set(CMAKE_BUILD_TYPE Release CACHE STRING "Release, Debug, Checked or Thread" FORCE)
 endif()
 # Asserts are SCREE_CHECKED's affair, so NDEBUG follows it.
 set(CMAKE_C_FLAGS_RELEASE "-O2 -DNDEBUG")
@@ -13,6 +13,8 @@ set(CMAKE_C_FLAGS_DEBUG "-O0 -g -DSCREE_CHECKED=1")
 set(CMAKE_C_FLAGS_CHECKED
     "-O1 -g -DSCREE_CHECKED=1 -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer")
 set(CMAKE_EXE_LINKER_FLAGS_CHECKED "-fsanitize=address,undefined")
+set(CMAKE_C_FLAGS_THREAD "-O1 -g -DSCREE_CHECKED=1 -fsanitize=thread")
+set(CMAKE_EXE_LINKER_FLAGS_THREAD "-fsanitize=thread")
 set(CMAKE_CXX_FLAGS_RELEASE ${CMAKE_C_FLAGS_RELEASE})
 set(CMAKE_CXX_FLAGS_DEBUG ${CMAKE_C_FLAGS_DEBUG})
 set(CMAKE_CXX_FLAGS_CHECKED ${CMAKE_C_FLAGS_CHECKED})

@@ -8,7 +8,7 @@ set(timeout_single 300)
 set(timeout_cli 600)
 set(timeout_python 600)
 set(timeout_checks 900)
-if(CMAKE_BUILD_TYPE STREQUAL "Checked")
+if(CMAKE_BUILD_TYPE MATCHES "Checked|Thread")
     set(timeout_unit 600) # sanitizers cost a factor of three to ten
     set(timeout_property 1200)
 endif()
@@ -17,6 +17,11 @@ endif()
 set(test_environment "OMP_NUM_THREADS=1" "OMP_WAIT_POLICY=passive"
     "UBSAN_OPTIONS=print_stacktrace=1" "ASAN_OPTIONS=detect_stack_use_after_return=1"
     "SCREE_SOURCE_DIR=${CMAKE_SOURCE_DIR}")
+if(CMAKE_BUILD_TYPE STREQUAL "Thread")
+    list(REMOVE_ITEM test_environment "OMP_NUM_THREADS=1")
+    list(APPEND test_environment "OMP_NUM_THREADS=4" "OMP_TOOL_LIBRARIES=libarcher.so"
+        "TSAN_OPTIONS=ignore_noninstrumented_modules=1 halt_on_error=1")
+endif()
 
 function(scree_describe_test name kind)
     set_tests_properties(${name} PROPERTIES

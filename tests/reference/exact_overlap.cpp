@@ -253,10 +253,10 @@ struct Float3
 /// Sums over clipped polygons; v[0] and v[1] of the area: seen from inside and from outside.
 struct Sums
 {
-    Float volume = Float(0, sum_bits); // six times, both views averaged
-    Float3 moment;                     // 24 times
-    Float3 area[2][2];                 // twice; [body][view]
-    Float coplanar[2] = {Float(0, sum_bits), Float(0, sum_bits)};
+    Float volume = Float(0, sum_bits);    // six times, both views averaged
+    Float3 moment;                        // 24 times
+    Float3 area[2][2];                    // twice; [body][view]
+    Float magnitude = Float(0, sum_bits); // of the terms of the volume
     double total_area = 0, coplanar_area = 0;
 };
 
@@ -322,6 +322,7 @@ void add_polygon(Sums &sums, int body, const Polygon &polygon, Weight weight)
         }
         height *= halves;
         sums.volume += height;
+        sums.magnitude += abs(height);
         for (int k = 0; k < 3; ++k)
         {
             term = first.v[k] + p.v[k];
@@ -509,8 +510,10 @@ Long rounded(const Float &value)
     return result;
 }
 
-void finish(Overlap &result, const Sums &sums, const Grid &grid)
+void finish(Overlap &result, Sums &sums, const Grid &grid)
 {
+    // terms that cancel exactly leave roundings of 2^-640
+    if (abs(sums.volume) < Float(sums.magnitude * 0x1p-600)) sums.volume = 0;
     // volume was summed six times and in halves, lengths are in units of 2^exponent
     const auto scaled = [&](const Float &value, int power)
     {

@@ -37,6 +37,7 @@ extern "C"
         double stiffness_factor;        ///< [1] factor of the volumetric law, default 0.7522527780636751
         double tangential_spring;       ///< [1] 1: with tangential history, 0: tangential damping alone
         bool attraction;                ///< true: the total normal force may turn attractive at separation
+        bool contact_moments; ///< default true: springs and dashpots of a contact resist twisting and rocking too
         scree_shear_mixing shear_mixing;
     } scree_contact_law_def;
 
@@ -80,7 +81,7 @@ extern "C"
     {
         double position[3];         ///< [m] of the centroid
         double orientation[4];      ///< (w, x, y, z) of the shape as given by its source, default identity
-        double size;                ///< [m] middle size; auto: the shape's own
+        double size;                ///< [m] middle size; auto: drawn from the group's size section
         double velocity[3];         ///< [m/s]
         double angular_velocity[3]; ///< [rad/s], world axes
     } scree_body_def;

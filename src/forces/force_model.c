@@ -71,7 +71,7 @@ scree_status scree_force_law_make(const scree_contact_law_def *def, const scree_
     law->damping_ratio = (scree_real)damping_ratio;
     law->friction_coefficient = (scree_real)def->friction_coefficient;
     law->has_tangential_spring = def->tangential_spring != 0;
-    law->has_moments = true;
+    law->has_moments = def->contact_moments;
     law->has_attraction = def->attraction;
     return SCREE_OK;
 }

@@ -86,6 +86,7 @@ static const cyaml_schema_field_t law_fields[] = {
     NUMBER(scree_contact_law_def, stiffness_factor),
     NUMBER(scree_contact_law_def, tangential_spring),
     TRUTH(scree_contact_law_def, attraction),
+    TRUTH(scree_contact_law_def, contact_moments),
     WORD(scree_contact_law_def, shear_mixing, shear_mixings),
     CYAML_FIELD_END};
 static const scree_scene_key law_keys[] = {
@@ -130,6 +131,11 @@ static const scree_scene_key law_keys[] = {
     {.name = "attraction",
      .default_text = "false",
      .meaning = "whether the total normal force may turn attractive when bodies separate"},
+    {.name = "contact_moments",
+     .default_text = "true",
+     .meaning =
+         "whether springs and dashpots are spread over the contact area and so resist twisting and rocking; false: "
+         "the law of Bilock (2020), where a block spins on its face for ever"},
     {.name = "shear_mixing",
      .default_text = "mindlin",
      .meaning = "1/G* of the pair: mindlin (2 - nu)/G summed over both, or bilock (1 - nu^2)/G, eq. 4.11 of Bilock "

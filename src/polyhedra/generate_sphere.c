@@ -278,11 +278,11 @@ scree_status scree_generate_unit_sphere(scree_mesh *mesh, int32_t num_triangles)
     scree_vec3 *forces = malloc((size_t)num_points * sizeof *forces);
     if (forces != NULL)
     {
-        // as many rounds as a few million pairs allow: all that a coarse sphere needs, none for a very fine one, which
+        // as many rounds as a million pairs allow: all that a coarse sphere needs, none for a very fine one, which
         // the spiral serves well
         const int64_t num_pairs = (int64_t)num_points * num_points;
-        const int64_t affordable = 4000000 / num_pairs;
-        const int64_t num_rounds = affordable > 400 ? 400 : affordable;
+        const int64_t affordable = 1000000 / num_pairs;
+        const int64_t num_rounds = affordable > 200 ? 200 : affordable;
         place_on_spiral(mesh->vertices, num_points);
         for (int64_t i = 0; i < num_rounds; ++i) repel(mesh->vertices, forces, num_points);
         status = triangulate(mesh);

@@ -8,8 +8,8 @@
 #define PI 3.14159265358979323846
 
 /// Hashes of a sphere of 180 triangles and of rock 7.
-#define SPHERE_HASH 0x2d58c5bfd74746f9u
-#define ROCK_HASH 0xe2bc2d556b5c0ffcu
+#define SPHERE_HASH 0x03e1ccbcffe1da66u
+#define ROCK_HASH 0x93becf0a8c5a8edcu
 
 static double volume_of(const scree_mesh *mesh)
 {

@@ -16,7 +16,8 @@ typedef struct scree_box_index
 {
     const scree_box *boxes;
     int32_t num;
-    scree_vec3 origin, bins_per_length;
+    scree_box region;
+    scree_vec3 scale;
     uint64_t starts[3][SCREE_INDEX_BINS];  ///< boxes whose lower bound lies in this bin or before
     uint64_t reaches[3][SCREE_INDEX_BINS]; ///< boxes whose upper bound lies in this bin or beyond
 } scree_box_index;
@@ -31,19 +32,20 @@ SCREE_FN int32_t scree_lowest_bit(uint64_t word)
 #endif
 }
 
-SCREE_FN int32_t scree_index_bin(scree_real x, scree_real origin, scree_real bins_per_length)
-{
-    const scree_real bin = (x - origin) * bins_per_length;
-    return bin >= SCREE_INDEX_BINS - 1 ? SCREE_INDEX_BINS - 1 : bin > 0 ? (int32_t)bin : 0;
-}
-
+/// Bins per length such that a coordinate within the bounds, less the lower one, lands in a bin.
 SCREE_FN scree_real scree_index_scale(scree_real lower, scree_real upper)
 {
-    const scree_real scale = SCREE_INDEX_BINS / (upper - lower);
+    const scree_real scale = (SCREE_INDEX_BINS - (scree_real)0.5) / (upper - lower);
     return upper > lower && scale < SCREE_REAL_MAX ? scale : 0;
 }
 
-/// Enters bounds [lower, upper] of box i along one axis.
+/// Bin of a coordinate along one axis; those outside the region count to its first or last bin.
+SCREE_FN int32_t scree_index_bin(scree_real x, scree_real lower, scree_real upper, scree_real scale)
+{
+    return (int32_t)((scree_max(lower, scree_min(upper, x)) - lower) * scale);
+}
+
+/// Enters box i along one axis, from its first bin to its last.
 SCREE_FN void scree_index_enter(scree_box_index *index, int32_t axis, int32_t i, int32_t first, int32_t last)
 {
     index->starts[axis][first] |= (uint64_t)1 << i;
@@ -56,11 +58,12 @@ SCREE_FN void scree_index_build(scree_box_index *index, const scree_box *boxes, 
     index->boxes = boxes;
     index->num = num;
     if (num <= SCREE_INDEX_DIRECT) return;
-    const scree_vec3 o = region.lower;
-    const scree_vec3 s = scree_vec3_make(scree_index_scale(o.x, region.upper.x), scree_index_scale(o.y, region.upper.y),
-                                         scree_index_scale(o.z, region.upper.z));
-    index->origin = o;
-    index->bins_per_length = s;
+    const scree_vec3 l = region.lower;
+    const scree_vec3 u = region.upper;
+    const scree_vec3 s =
+        scree_vec3_make(scree_index_scale(l.x, u.x), scree_index_scale(l.y, u.y), scree_index_scale(l.z, u.z));
+    index->region = region;
+    index->scale = s;
     for (int32_t axis = 0; axis < 3; ++axis)
     {
         for (int32_t k = 0; k < SCREE_INDEX_BINS; ++k)
@@ -71,11 +74,13 @@ SCREE_FN void scree_index_build(scree_box_index *index, const scree_box *boxes, 
     }
     for (int32_t i = 0; i < num; ++i)
     {
-        const scree_vec3 l = boxes[i].lower;
-        const scree_vec3 u = boxes[i].upper;
-        scree_index_enter(index, 0, i, scree_index_bin(l.x, o.x, s.x), scree_index_bin(u.x, o.x, s.x));
-        scree_index_enter(index, 1, i, scree_index_bin(l.y, o.y, s.y), scree_index_bin(u.y, o.y, s.y));
-        scree_index_enter(index, 2, i, scree_index_bin(l.z, o.z, s.z), scree_index_bin(u.z, o.z, s.z));
+        const scree_box box = boxes[i];
+        scree_index_enter(index, 0, i, scree_index_bin(box.lower.x, l.x, u.x, s.x),
+                          scree_index_bin(box.upper.x, l.x, u.x, s.x));
+        scree_index_enter(index, 1, i, scree_index_bin(box.lower.y, l.y, u.y, s.y),
+                          scree_index_bin(box.upper.y, l.y, u.y, s.y));
+        scree_index_enter(index, 2, i, scree_index_bin(box.lower.z, l.z, u.z, s.z),
+                          scree_index_bin(box.upper.z, l.z, u.z, s.z));
     }
     for (int32_t axis = 0; axis < 3; ++axis)
     {
@@ -104,14 +109,15 @@ SCREE_FN uint64_t scree_index_query(const scree_box_index *index, scree_box quer
         }
         return found;
     }
-    const scree_vec3 o = index->origin;
-    const scree_vec3 s = index->bins_per_length;
-    return index->starts[0][scree_index_bin(query.upper.x, o.x, s.x)] &
-           index->reaches[0][scree_index_bin(query.lower.x, o.x, s.x)] &
-           index->starts[1][scree_index_bin(query.upper.y, o.y, s.y)] &
-           index->reaches[1][scree_index_bin(query.lower.y, o.y, s.y)] &
-           index->starts[2][scree_index_bin(query.upper.z, o.z, s.z)] &
-           index->reaches[2][scree_index_bin(query.lower.z, o.z, s.z)];
+    const scree_vec3 l = index->region.lower;
+    const scree_vec3 u = index->region.upper;
+    const scree_vec3 s = index->scale;
+    return index->starts[0][scree_index_bin(query.upper.x, l.x, u.x, s.x)] &
+           index->reaches[0][scree_index_bin(query.lower.x, l.x, u.x, s.x)] &
+           index->starts[1][scree_index_bin(query.upper.y, l.y, u.y, s.y)] &
+           index->reaches[1][scree_index_bin(query.lower.y, l.y, u.y, s.y)] &
+           index->starts[2][scree_index_bin(query.upper.z, l.z, u.z, s.z)] &
+           index->reaches[2][scree_index_bin(query.lower.z, l.z, u.z, s.z)];
 }
 
 #endif

@@ -36,6 +36,7 @@ typedef struct scree_overlap_result
     scree_vec3 arm;         ///< [m] centroid of the overlap minus the position of A
     scree_vec3 normal;      ///< [1] area vector over its length: out of A, into B
     scree_real indentation; ///< [m] extent of the overlap along the normal
+    scree_real radius;      ///< [m] largest distance of a point of the overlap from the centroid, across the normal
     scree_real residual;    ///< [1] certificate: |S_A + S_B| over the area, from the faces' own normals
     scree_overlap_status status;
     bool used_fallback; ///< the certificate made the filtered scheme repeat with the hierarchy

@@ -4,7 +4,7 @@
 #define SCREE_OVERLAP_KERNEL_H
 
 #include "contact/overlap_crossings_kernel.h"
-#include "contact/overlap_frame_kernel.h"
+#include "contact/overlap_direction_kernel.h"
 #include "contact/overlap_sums_kernel.h"
 #include "contact/separation_kernel.h"
 #include "contact/triangle_filter_kernel.h"
@@ -28,11 +28,6 @@ typedef struct scree_overlap_setup
     scree_box box[2];      ///< of the whole bodies; A's exact, B's from outside
     scree_real extents[2]; ///< largest side of each body's own box, in units of A
 } scree_overlap_setup;
-
-SCREE_FN scree_real scree_box_extent(scree_box box)
-{
-    return scree_max(box.upper.x - box.lower.x, scree_max(box.upper.y - box.lower.y, box.upper.z - box.lower.z));
-}
 
 /// Are the bounding spheres apart?
 SCREE_FN bool scree_overlap_spheres_apart(const scree_overlap_pair *pair)
@@ -81,7 +76,7 @@ SCREE_FN bool scree_overlap_set_up(const scree_overlap_pair *pair, scree_overlap
     scree_box common;
     common.lower = scree_vec3_max(box_a.lower, box_b.lower);
     common.upper = scree_vec3_min(box_a.upper, box_b.upper);
-    const scree_vec3 direction = scree_vec3_sub(scree_box_middle(box_b), scree_box_middle(box_a));
+    const scree_vec3 direction = scree_overlap_direction(pair->shape[0], pair->shape[1], &pose);
     setup->frame = scree_overlap_frame_make(&pose, direction, scree_box_middle(common));
     setup->direction = scree_frame_turn(&setup->frame, direction);
     for (int32_t side = 0; side < 2; ++side)
@@ -125,12 +120,13 @@ SCREE_FN bool scree_overlap_half_spaces(scree_overlap_slice *slice, const scree_
 }
 
 /// Keeps the triangles of one body that reach into the region. False: none, or slice->lack is set.
-SCREE_FN bool scree_overlap_keep(scree_overlap_slice *slice, int32_t side, const scree_posed_shape *posed,
+SCREE_FN bool scree_overlap_keep(scree_overlap_slice *slice, int32_t side, const scree_overlap_setup *setup,
                                  const scree_filter_region *region)
 {
     scree_overlap_body *body = slice->body + side;
+    const scree_posed_shape *posed = setup->posed + side;
     if (!scree_filter_uses_tree(posed->shape)) scree_filter_all(body, posed->shape, region);
-    else if (!scree_filter_tree(body, posed, region))
+    else if (!scree_filter_tree(body, posed, region, setup->box[side]))
     {
         slice->lack = SCREE_LACK_PIECES;
         return false;
@@ -149,9 +145,9 @@ SCREE_FN bool scree_overlap_filter(scree_overlap_slice *slice, const scree_overl
 
     // B against A's box, A against what was kept of B, and B again against what was kept of A
     region[1].box = setup->box[0];
-    if (!scree_overlap_keep(slice, 1, setup->posed + 1, region + 1)) return false;
+    if (!scree_overlap_keep(slice, 1, setup, region + 1)) return false;
     region[0].box = slice->body[1].box;
-    if (!scree_overlap_keep(slice, 0, setup->posed, region)) return false;
+    if (!scree_overlap_keep(slice, 0, setup, region)) return false;
     region[1].box = slice->body[0].box;
     scree_filter_again(slice->body + 1, region + 1);
     if (slice->body[1].num_triangles == 0) return false;
@@ -179,6 +175,7 @@ SCREE_FN scree_overlap_result scree_overlap_nothing(scree_overlap_status status)
     result.arm = scree_vec3_zero();
     result.normal = scree_vec3_zero();
     result.indentation = 0;
+    result.radius = 0;
     result.residual = 0;
     result.status = status;
     result.used_fallback = false;
@@ -223,6 +220,7 @@ SCREE_FN scree_overlap_result scree_overlap_to_world(const scree_overlap_slice *
     result.status = SCREE_OVERLAP_TOUCHING;
     result.normal = scree_vec3_scale(area_vector, 1 / scree_vec3_length(area_vector));
     result.indentation = scale * scree_overlap_extent_along(slice, sums->middle, n);
+    result.radius = scale * scree_overlap_radius_about(slice, centre, n);
     return result;
 }
 

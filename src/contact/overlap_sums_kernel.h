@@ -22,6 +22,7 @@ typedef struct scree_overlap_sums
     scree_vec3 middle; ///< C
     scree_box box;     ///< of all collected points
     scree_real six_volume;
+    scree_real lost;        ///< what rounding has taken from six_volume so far, until it is added at the end
     scree_vec3 moment;      ///< 24 times the first moment about C
     scree_vec3 area_vector; ///< twice S
     scree_real residual;
@@ -104,6 +105,15 @@ SCREE_FN scree_box scree_overlap_points_box(const scree_overlap_slice *slice)
     return box;
 }
 
+/// Adds a term to six_volume and keeps what is rounded off (Knuth): a large overlap is the sum of thousands of terms.
+SCREE_FN void scree_overlap_add_volume(scree_overlap_sums *sums, scree_real term)
+{
+    const scree_real sum = sums->six_volume + term;
+    const scree_real added = sum - sums->six_volume;
+    sums->lost += (sums->six_volume - (sum - added)) + (term - added);
+    sums->six_volume = sum;
+}
+
 /// One point of an edge: the end (sign > 0) or the start of a part inside the other body. x is relative to C.
 SCREE_FN void scree_overlap_add_point(scree_overlap_body *body, int32_t e, scree_vec3 x, scree_real sign,
                                       scree_overlap_sums *sums)
@@ -116,7 +126,7 @@ SCREE_FN void scree_overlap_add_point(scree_overlap_body *body, int32_t e, scree
     const scree_vec3 q_right = scree_overlap_plane_foot(right, sums->middle);
     const scree_vec3 twice_area = scree_vec3_scale(scree_vec3_cross(r, x), sign);
     const scree_real term = scree_vec3_dot(scree_vec3_sub(q_left, q_right), twice_area);
-    sums->six_volume += term;
+    scree_overlap_add_volume(sums, term);
     sums->moment = scree_vec3_add_scaled(sums->moment, scree_vec3_add(r, x), term);
     left->boundary = scree_vec3_add(left->boundary, twice_area);
     right->boundary = scree_vec3_sub(right->boundary, twice_area);
@@ -238,7 +248,7 @@ SCREE_FN void scree_overlap_sum_segments(scree_overlap_slice *slice, scree_overl
         const scree_vec3 foot_g = scree_overlap_plane_foot(g, sums->middle);
         const scree_vec3 twice_area = scree_vec3_cross(p, q);
         const scree_real term = scree_vec3_dot(scree_vec3_sub(foot_f, foot_g), twice_area);
-        sums->six_volume += term;
+        scree_overlap_add_volume(sums, term);
         sums->moment = scree_vec3_add_scaled(sums->moment, scree_vec3_add(p, q), term);
         sums->area_vector = scree_vec3_add(sums->area_vector, twice_area);
         f->boundary = scree_vec3_add(f->boundary, twice_area);
@@ -277,6 +287,7 @@ SCREE_FN bool scree_overlap_sum(scree_overlap_slice *slice, scree_overlap_sums *
 {
     sums->box = scree_overlap_points_box(slice);
     sums->six_volume = 0;
+    sums->lost = 0;
     sums->moment = scree_vec3_zero();
     sums->area_vector = scree_vec3_zero();
     sums->residual = 0;
@@ -288,6 +299,7 @@ SCREE_FN bool scree_overlap_sum(scree_overlap_slice *slice, scree_overlap_sums *
     scree_overlap_sum_edges(slice, sums);
     scree_overlap_sum_segments(slice, sums);
     scree_overlap_sum_faces(slice, sums);
+    sums->six_volume += sums->lost;
     return is_closed;
 }
 
@@ -315,6 +327,29 @@ SCREE_FN scree_real scree_overlap_extent_along(const scree_overlap_slice *slice,
         }
     }
     return most > least ? most - least : 0;
+}
+
+/// Largest distance of a point of the overlap from `centre`, measured across n.
+SCREE_FN scree_real scree_overlap_radius_about(const scree_overlap_slice *slice, scree_vec3 centre, scree_vec3 n)
+{
+    scree_real largest = 0;
+    for (int32_t c = 0; c < slice->num_crossings; ++c)
+    {
+        const scree_vec3 across = scree_vec3_cross(n, scree_vec3_sub(slice->crossings[c].point, centre));
+        largest = scree_max(largest, scree_vec3_dot(across, across));
+    }
+    for (int32_t side = 0; side < 2; ++side)
+    {
+        const scree_overlap_body *body = slice->body + side;
+        if (body->num_inside == 0) continue;
+        for (int32_t v = 0; v < body->num_vertices; ++v)
+        {
+            if (body->inside[v] == 0) continue;
+            const scree_vec3 across = scree_vec3_cross(n, scree_vec3_sub(body->points[v], centre));
+            largest = scree_max(largest, scree_vec3_dot(across, across));
+        }
+    }
+    return scree_sqrt(largest);
 }
 
 #endif

@@ -10,6 +10,22 @@
 /// Shapes up to this many vertices are asked one vertex after the other, larger ones through their tree.
 #define SCREE_SUPPORT_TREE_FROM 48
 
+/// Largest direction . v over a box.
+SCREE_FN scree_real scree_support_of_box(const scree_box *box, scree_vec3 direction)
+{
+    return scree_max(direction.x * box->lower.x, direction.x * box->upper.x) +
+           scree_max(direction.y * box->lower.y, direction.y * box->upper.y) +
+           scree_max(direction.z * box->lower.z, direction.z * box->upper.z);
+}
+
+SCREE_FN scree_real scree_support_of_triangle(const scree_shape_view *shape, int32_t t, scree_vec3 direction)
+{
+    const int32_t *v = shape->triangles[t].v;
+    return scree_max(
+        scree_max(scree_vec3_dot(direction, shape->vertices[v[0]]), scree_vec3_dot(direction, shape->vertices[v[1]])),
+        scree_vec3_dot(direction, shape->vertices[v[2]]));
+}
+
 /// Largest direction . v over the vertices of a shape, in the shape's own frame, unscaled.
 SCREE_FN scree_real scree_support(const scree_shape_view *shape, scree_vec3 direction)
 {
@@ -20,28 +36,27 @@ SCREE_FN scree_real scree_support(const scree_shape_view *shape, scree_vec3 dire
             most = scree_max(most, scree_vec3_dot(direction, shape->vertices[v]));
         return most;
     }
+    // straight down to a far leaf, so that the walk over the tree can skip nearly everything else
     int32_t k = shape->tree.root;
+    while (shape->tree.nodes[k].first_child >= 0)
+    {
+        const int32_t left = shape->tree.nodes[k].first_child;
+        const int32_t right = shape->tree.nodes[left].escape;
+        k = scree_support_of_box(&shape->tree.nodes[left].box, direction) >
+                    scree_support_of_box(&shape->tree.nodes[right].box, direction)
+                ? left
+                : right;
+    }
+    most = scree_support_of_triangle(shape, -1 - shape->tree.nodes[k].first_child, direction);
+    k = shape->tree.root;
     while (k != SCREE_LBVH_END)
     {
         const scree_lbvh_node *node = shape->tree.nodes + k;
-        const scree_vec3 corner = scree_vec3_make(direction.x < 0 ? node->box.lower.x : node->box.upper.x,
-                                                  direction.y < 0 ? node->box.lower.y : node->box.upper.y,
-                                                  direction.z < 0 ? node->box.lower.z : node->box.upper.z);
-        // products and sums are monotone under rounding: a box corner is never below its vertices
-        if (scree_vec3_dot(direction, corner) <= most)
-        {
-            k = node->escape;
-            continue;
-        }
-        if (node->first_child >= 0)
-        {
-            k = node->first_child;
-            continue;
-        }
-        const scree_triangle *triangle = shape->triangles + (-1 - node->first_child);
-        for (int32_t c = 0; c < 3; ++c)
-            most = scree_max(most, scree_vec3_dot(direction, shape->vertices[triangle->v[c]]));
-        k = node->escape;
+        // products and sums are monotone under rounding: a box is never short of its vertices
+        const bool is_entered = scree_support_of_box(&node->box, direction) > most;
+        if (is_entered && node->first_child < 0)
+            most = scree_max(most, scree_support_of_triangle(shape, -1 - node->first_child, direction));
+        k = is_entered && node->first_child >= 0 ? node->first_child : node->escape;
     }
     return most;
 }

@@ -135,31 +135,56 @@ SCREE_FN int32_t scree_filter_vertex(scree_overlap_body *body, const scree_posed
     return added;
 }
 
-/// Can anything in a box of the shape's tree reach into the region? Never says no where a triangle would be kept.
-SCREE_FN bool scree_filter_enters_node(const scree_posed_shape *posed, const scree_filter_region *region,
-                                       const scree_box *node_box)
+/// A region in the body frame of a shape, from outside: what the nodes of its tree are held against.
+SCREE_FN scree_filter_region scree_filter_in_body(const scree_posed_shape *posed, const scree_filter_region *region,
+                                                  scree_box body_box)
 {
-    const scree_vec3 middle = scree_affine(&posed->rows, scree_box_middle(*node_box), posed->offset);
-    scree_vec3 half = scree_turned_extents(&posed->rows, scree_box_half(*node_box));
+    // the one-sided bound in z goes as far as the body itself
+    scree_box box = region->box;
+    if ((region->dropping & SCREE_OUTSIDE_BELOW) == 0) box.lower.z = body_box.lower.z;
+    if ((region->dropping & SCREE_OUTSIDE_ABOVE) == 0) box.upper.z = body_box.upper.z;
+    const scree_mat3 *m = &posed->rows;
+    const scree_real scale2 = scree_vec3_dot(m->row[0], m->row[0]);
+    const scree_vec3 middle = scree_vec3_sub(scree_box_middle(box), posed->offset);
+    const scree_vec3 half = scree_box_half(box);
     const scree_real rounding =
-        16 * SCREE_REAL_EPSILON *
+        32 * SCREE_REAL_EPSILON *
         (scree_abs(middle.x) + scree_abs(middle.y) + scree_abs(middle.z) + scree_abs(posed->offset.x) +
          scree_abs(posed->offset.y) + scree_abs(posed->offset.z) + half.x + half.y + half.z);
-    half = scree_vec3_add(half, scree_vec3_make(rounding, rounding, rounding));
-    if (middle.x + half.x < region->box.lower.x || middle.x - half.x > region->box.upper.x) return false;
-    if (middle.y + half.y < region->box.lower.y || middle.y - half.y > region->box.upper.y) return false;
-    if ((region->dropping & SCREE_OUTSIDE_BELOW) != 0 && middle.z + half.z < region->box.lower.z) return false;
-    if ((region->dropping & SCREE_OUTSIDE_ABOVE) != 0 && middle.z - half.z > region->box.upper.z) return false;
+
+    scree_mat3 back;
+    back.row[0] = scree_vec3_make(m->row[0].x, m->row[1].x, m->row[2].x);
+    back.row[1] = scree_vec3_make(m->row[0].y, m->row[1].y, m->row[2].y);
+    back.row[2] = scree_vec3_make(m->row[0].z, m->row[1].z, m->row[2].z);
+    const scree_vec3 wide = scree_vec3_add(half, scree_vec3_make(rounding, rounding, rounding));
+    const scree_vec3 turned_middle = scree_vec3_scale(scree_mat3_apply(back, middle), 1 / scale2);
+    const scree_vec3 turned_half = scree_vec3_scale(scree_turned_extents(&back, wide), 1 / scale2);
+    scree_filter_region turned;
+    turned.box.lower = scree_vec3_sub(turned_middle, turned_half);
+    turned.box.upper = scree_vec3_add(turned_middle, turned_half);
+    turned.direction = scree_mat3_apply_transposed(*m, region->direction);
     const scree_vec3 d = region->direction;
-    const scree_real least =
-        scree_vec3_dot(d, middle) - scree_abs(d.x) * half.x - scree_abs(d.y) * half.y - scree_abs(d.z) * half.z;
-    return least <= region->reach;
+    turned.reach = region->reach - scree_vec3_dot(d, posed->offset) +
+                   rounding * (scree_abs(d.x) + scree_abs(d.y) + scree_abs(d.z));
+    turned.dropping = region->dropping;
+    return turned;
 }
 
-/// Keeps triangles through the tree. False if the buffers are too small.
-SCREE_FN bool scree_filter_tree(scree_overlap_body *body, const scree_posed_shape *posed,
-                                const scree_filter_region *region)
+/// Can anything in a box of the shape's tree reach into the region? Never says no where a triangle would be kept.
+SCREE_FN bool scree_filter_enters_node(const scree_filter_region *region, const scree_box *box)
 {
+    const scree_vec3 d = region->direction;
+    const scree_real least = scree_min(d.x * box->lower.x, d.x * box->upper.x) +
+                             scree_min(d.y * box->lower.y, d.y * box->upper.y) +
+                             scree_min(d.z * box->lower.z, d.z * box->upper.z);
+    return least <= region->reach && scree_box_overlaps(region->box, *box);
+}
+
+/// Keeps triangles through the tree; `body_box` is the box of the whole body. False if the buffers are too small.
+SCREE_FN bool scree_filter_tree(scree_overlap_body *body, const scree_posed_shape *posed,
+                                const scree_filter_region *region, scree_box body_box)
+{
+    const scree_filter_region turned = scree_filter_in_body(posed, region, body_box);
     const scree_lbvh_view *tree = &posed->shape->tree;
     body->num_vertices = 0;
     body->num_triangles = 0;
@@ -167,7 +192,7 @@ SCREE_FN bool scree_filter_tree(scree_overlap_body *body, const scree_posed_shap
     while (k != SCREE_LBVH_END)
     {
         const scree_lbvh_node *node = tree->nodes + k;
-        if (!scree_filter_enters_node(posed, region, &node->box))
+        if (!scree_filter_enters_node(&turned, &node->box))
         {
             k = node->escape;
             continue;

@@ -9,6 +9,7 @@
     X(patch)                    \
     X(volume)                   \
     X(indentation)              \
+    X(radius)                   \
     X(normal)                   \
     X(area_vector)              \
     X(arm)                      \

@@ -197,6 +197,7 @@ static scree_status compact(const struct scree_narrow_phase_buffers *b, const sc
             list->patch[c] = (int32_t)(c - list->first_of_pair[p]);
             list->volume[c] = result->volume;
             list->indentation[c] = result->indentation;
+            list->radius[c] = result->radius;
             list->normal[c] = scree_vec3_negate(result->normal);
             list->area_vector[c] = result->area_vector;
             list->arm[c] = result->arm;

@@ -47,6 +47,7 @@ SCREE_FN void scree_contact_force_at(scree_contact_force_args a, int64_t c)
     scree_contact_kinematics k;
     k.volume = a.contacts.volume[c];
     k.indentation = a.contacts.indentation[c];
+    k.radius = a.contacts.radius[c];
     k.normal = a.contacts.normal[c];
     k.relative_velocity = scree_relative_velocity(&a.bodies, pair.i, pair.j, a.contacts.arm[c]);
     k.relative_rotation = scree_vec3_sub(a.bodies.angular_velocity[pair.i], a.bodies.angular_velocity[pair.j]);

@@ -5,7 +5,7 @@
 ///     k_n  = 2 E* sqrt(V/(pi d)),  k_t = 8 G* sqrt(V/(pi d))
 ///     F_t += -k_t dx_t, scaled by k_t/k_t_old while unloading; F_t - 2 g sqrt(m* k_t) v_t is capped at mu F_n
 ///
-/// Moments: springs and dashpots are spread evenly over a disc of the contact's radius a = sqrt(V/(pi d)),
+/// Moments: springs and dashpots are spread evenly over a disc of the contact's extent a across the normal,
 ///
 ///     M_n += -k_t a^2/2 w_n dt;  M_n - 2 g sqrt(m* k_t) a^2/2 w_n is capped at 2/3 a mu F_n     Marshall (2009),
 ///     twisting M_t  = -2 g sqrt(m* k_n) a^2/4 w_t, capped at a/4 F_n (beyond it part of the disc would pull)
@@ -24,6 +24,7 @@ typedef struct scree_contact_kinematics
 {
     scree_real volume;               ///< [m^3] > 0
     scree_real indentation;          ///< [m] > 0
+    scree_real radius;               ///< [m] of the contact across the normal
     scree_vec3 normal;               ///< [1] unit, from j towards i
     scree_vec3 relative_velocity;    ///< [m/s] of i against j at the contact point
     scree_vec3 relative_rotation;    ///< [rad/s] angular velocity of i minus that of j
@@ -45,7 +46,6 @@ typedef struct scree_contact_force
     scree_real elastic_force;        ///< [N] elastic part of the normal force
     scree_real elastic_energy;       ///< [J] 2/5 F d, exact for Hertz
     scree_real spring_energy;        ///< [J] of the tangential and the torsion spring
-    scree_real contact_radius;       ///< [m] a
     scree_real normal_stiffness;     ///< [N/m] k_n
     scree_real tangential_stiffness; ///< [N/m] k_t
     bool is_slipping;
@@ -96,11 +96,10 @@ SCREE_FN void scree_tangential_force(const scree_force_law *law, const scree_con
 SCREE_FN void scree_contact_moment(const scree_force_law *law, const scree_contact_kinematics *k,
                                    scree_real normal_force, scree_contact_force *f)
 {
-    const scree_real a = f->contact_radius, half_square = a * a / 2;
+    const scree_real a = k->radius, half_square = a * a / 2;
     const scree_real twist = scree_vec3_dot(k->relative_rotation, k->normal);
     const scree_vec3 rocking = scree_vec3_add_scaled(k->relative_rotation, k->normal, -twist);
 
-    // torsion: k_t a^2/2 grows with k_t cubed, as a does with k_t
     const scree_real twist_damping = 2 * law->damping_ratio * scree_sqrt(k->effective_mass * f->tangential_stiffness);
     const scree_real stiffness = f->tangential_stiffness * half_square;
     scree_real torsion = 0;
@@ -109,7 +108,7 @@ SCREE_FN void scree_contact_moment(const scree_force_law *law, const scree_conta
         torsion = k->torsion;
         const scree_real ratio =
             f->tangential_stiffness < k->tangential_stiffness ? f->tangential_stiffness / k->tangential_stiffness : 1;
-        torsion = torsion * (ratio * ratio * ratio) - stiffness * twist * k->time_step;
+        torsion = torsion * ratio - stiffness * twist * k->time_step;
     }
     scree_real moment = torsion - twist_damping * half_square * twist;
     const scree_real limit = (scree_real)(2.0 / 3.0) * a * law->friction_coefficient * normal_force;
@@ -137,7 +136,6 @@ SCREE_FN void scree_volumetric_force(const scree_force_law *law, const scree_con
 {
     const scree_real inverse_pi = (scree_real)0.31830988618379067154;
     const scree_real contact_radius = scree_sqrt(inverse_pi * (k->volume / k->indentation));
-    f->contact_radius = contact_radius;
     f->normal_stiffness = 2 * law->effective_modulus * contact_radius;
     f->tangential_stiffness = 8 * law->effective_shear_modulus * contact_radius;
     f->elastic_force = law->stiffness_factor * law->effective_modulus * scree_sqrt(k->volume * k->indentation);

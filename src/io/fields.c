@@ -72,6 +72,8 @@ static const scree_field contact_fields[] = {
     CONTACT(patch, "1", "index of the contact within its pair", SCREE_FIELD_INT32, 1),
     CONTACT(volume, "m^3", "overlap volume", SCREE_FIELD_REAL, 1),
     CONTACT(indentation, "m", "extent of the overlap along the normal", SCREE_FIELD_REAL, 1),
+    CONTACT(radius, "m", "largest distance of a point of the overlap from the contact point, across the normal",
+            SCREE_FIELD_REAL, 1),
     CONTACT(normal, "1", "unit vector from j towards i", SCREE_FIELD_REAL, 3),
     CONTACT(area_vector, "m^2", "area of i's surface inside j, outward from i", SCREE_FIELD_REAL, 3),
     CONTACT(arm, "m", "contact point minus position of i", SCREE_FIELD_REAL, 3),
@@ -93,10 +95,10 @@ static const scree_field contact_fields[] = {
 // an array that is added to the particles or contacts must be added to its table, or a restart would lose it
 _Static_assert(sizeof(scree_particles) == offsetof(scree_particles, position) +
                                               sizeof particle_fields / sizeof particle_fields[0] * sizeof(void *),
-               "every array of the particles has a field");
+               "add the new array to particle_fields");
 _Static_assert(sizeof(scree_contact_list) == offsetof(scree_contact_list, bodies) +
                                                  sizeof contact_fields / sizeof contact_fields[0] * sizeof(void *),
-               "every array of the contacts has a field");
+               "add the new array to contact_fields");
 
 const scree_field scree_frame_particle = {"particle", "1", "id of the particle", SCREE_FIELD_INT32, 1, 0};
 const scree_field scree_frame_group = {"group",           "1", "index of the particle group in the scene",

@@ -12,10 +12,11 @@ scree_status scree_generate_tetrahedron(scree_mesh *mesh, double radius);
 /// Schoenhardt polyhedron (twisted octahedron, 8 triangles, three concave edges) in a sphere of the given radius.
 scree_status scree_generate_schoenhardt(scree_mesh *mesh, double radius);
 /// Near-uniform triangulation of a sphere with `num_triangles` (even, >= 4) triangles or the nearest count there is;
-/// scaled so that its volume is that of the sphere.
+/// scaled so that its volume is that of the sphere. SCREE_INVALID_INPUT above two million triangles.
 scree_status scree_generate_sphere(scree_mesh *mesh, double radius, int32_t num_triangles);
 /// Irregular rock with small concavities: a fine noisy, faceted and dented sphere of `detail` triangles (1000 if 0),
-/// simplified to about num_triangles with its volume kept. Same seed, same rock. Middle box size 1.
+/// simplified to about num_triangles with its volume kept. Same seed, same rock. In its body frame; middle box size 1
+/// before it is simplified, so that coarse and fine rocks of a seed have one volume, not one box.
 scree_status scree_generate_rock(scree_mesh *mesh, uint64_t seed, int32_t num_triangles, int32_t detail);
 
 #endif

@@ -413,6 +413,80 @@ static void loose_triangles_become_a_body_again(void)
     }
 }
 
+/// Number of intersecting pairs that a report tells of.
+static int64_t num_told(const scree_report *report)
+{
+    int64_t num = 0;
+    for (int i = 0; i < report->num_messages; ++i)
+    {
+        long long more = 0;
+        num += strstr(report->messages[i], "touch or pass through each other") != NULL;
+        if (sscanf(report->messages[i], "mesh: intersecting triangles: %lld more", &more) == 1) num += more;
+    }
+    return num;
+}
+
+/// The tree of the validation misses no pair: all pairs tried one by one give the same number.
+static void no_pair_is_missed(void)
+{
+    for (int trial = 0; trial < 40; ++trial)
+    {
+        scree_mesh mesh = random_sound_mesh();
+        scree_report report = {0};
+        for (int k = 0; k < 1 + trial % 3; ++k)
+        {
+            scree_vec3 *p = mesh.vertices + random_below(mesh.num_vertices);
+            *p = scree_vec3_scale(*p, (scree_real)(-1.5 * scree_test_random(&state)));
+        }
+        int64_t num = 0;
+        for (int32_t i = 0; i < mesh.num_triangles; ++i)
+            for (int32_t j = i + 1; j < mesh.num_triangles; ++j) num += scree_mesh_triangles_meet(&mesh, i, j);
+        scree_mesh_validate(&mesh, "mesh", &report);
+        SCREE_CHECK_INT(num_told(&report), num);
+        scree_report_clear(&report);
+        scree_mesh_destroy(&mesh);
+    }
+}
+
+/// Grains at all points of a lattice in and around an L whose corners, edges and diagonals lie on the lattice: every
+/// tie of the inside test occurs.
+static void inside_is_decided_on_edges_and_diagonals(void)
+{
+    static const double outline[12][3] = {{0, 0, 0}, {4, 0, 0}, {4, 2, 0}, {2, 2, 0}, {2, 4, 0}, {0, 4, 0},
+                                          {0, 0, 4}, {4, 0, 4}, {4, 2, 4}, {2, 2, 4}, {2, 4, 4}, {0, 4, 4}};
+    static const int32_t triangles[20][3] = {{0, 2, 1},  {0, 3, 2},  {0, 4, 3},   {0, 5, 4}, {6, 7, 8},
+                                             {6, 8, 9},  {6, 9, 10}, {6, 10, 11}, {0, 1, 7}, {0, 7, 6},
+                                             {1, 2, 8},  {1, 8, 7},  {2, 3, 9},   {2, 9, 8}, {3, 4, 10},
+                                             {3, 10, 9}, {4, 5, 11}, {4, 11, 10}, {5, 0, 6}, {5, 6, 11}};
+    static const int orders[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
+    for (int trial = 0; trial < 6 * 11 * 11 * 11; ++trial)
+    {
+        // half steps from -0.5 to 4.5
+        const double p[3] = {0.5 * (trial / 6 % 11) - 0.5, 0.5 * (trial / 66 % 11) - 0.5, 0.5 * (trial / 726) - 0.5};
+        const bool is_in_l =
+            p[0] > 0 && p[1] > 0 && p[2] > 0 && p[0] < 4 && p[1] < 4 && p[2] < 4 && (p[0] < 2 || p[1] < 2);
+        const bool is_in_closed_l =
+            p[0] >= 0 && p[1] >= 0 && p[2] >= 0 && p[0] <= 4 && p[1] <= 4 && p[2] <= 4 && (p[0] <= 2 || p[1] <= 2);
+        if (is_in_l != is_in_closed_l) continue;
+        // axes permuted, so that edges along all axes stand above the grain
+        double turned[12][3], grain[4][3];
+        const int *order = orders[trial % 6];
+        for (int i = 0; i < 12; ++i)
+            for (int k = 0; k < 3; ++k) turned[i][k] = outline[i][order[k]];
+        for (int i = 0; i < 4; ++i)
+            for (int k = 0; k < 3; ++k) grain[i][k] = p[order[k]] + (i == k + 1 ? 0.125 : 0.0);
+        static const int32_t grain_triangles[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+        scree_mesh mesh = scree_test_mesh(turned, 12, triangles, 20);
+        scree_mesh part = scree_test_mesh(grain, 4, grain_triangles, 4);
+        if (trial % 6 > 2) scree_test_mesh_turn_inside_out(&mesh);
+        if (is_in_l) scree_test_mesh_turn_inside_out(&part);
+        scree_test_mesh_append(&mesh, &part);
+        SCREE_CHECK(scree_test_is_valid(&mesh, "L and grain"));
+        scree_mesh_destroy(&part);
+        scree_mesh_destroy(&mesh);
+    }
+}
+
 /// Boxes in boxes, and beside them, in random order: valid if and only if each piece's sense fits the number of boxes
 /// around it.
 static void nested_pieces_must_alternate(void)
@@ -474,6 +548,8 @@ int main(void)
     SCREE_RUN(every_fault_is_found);
     SCREE_RUN(sound_meshes_stay_sound_under_motion_and_mending);
     SCREE_RUN(loose_triangles_become_a_body_again);
+    SCREE_RUN(no_pair_is_missed);
+    SCREE_RUN(inside_is_decided_on_edges_and_diagonals);
     SCREE_RUN(nested_pieces_must_alternate);
     SCREE_RUN(rocks_of_all_seeds_simplify_to_all_sizes);
     return SCREE_TEST_END();

@@ -7,7 +7,7 @@ set(timeout_regression 600)
 set(timeout_single 300)
 set(timeout_cli 600)
 set(timeout_python 600)
-set(timeout_checks 900)
+set(timeout_checks 1800)
 if(CMAKE_BUILD_TYPE MATCHES "Checked|Thread")
     set(timeout_unit 600) # sanitizers cost a factor of three to ten
     set(timeout_property 1200)
@@ -15,7 +15,7 @@ endif()
 
 # Tests of threads set their number themselves; elsewhere one thread per test lets two tests run side by side.
 set(test_environment "OMP_NUM_THREADS=1" "OMP_WAIT_POLICY=passive"
-    "UBSAN_OPTIONS=print_stacktrace=1" "ASAN_OPTIONS=detect_stack_use_after_return=1"
+    "UBSAN_OPTIONS=print_stacktrace=1" "ASAN_OPTIONS=detect_stack_use_after_return=1:allocator_may_return_null=1"
     "SCREE_SOURCE_DIR=${CMAKE_SOURCE_DIR}")
 if(CMAKE_BUILD_TYPE STREQUAL "Thread")
     list(REMOVE_ITEM test_environment "OMP_NUM_THREADS=1")

@@ -1,6 +1,6 @@
 /// \file repose.c
 /// Angle of repose (Bilock 2020, 6.3): the largest height of a vertex above the plate in each bin along x, fitted with
-/// the sigmoid h(x) = c/(1 + exp(a (x - b))); the angle is that of its steepest slope, |a| c/4.
+/// the sigmoid h(x) = c/(1 + exp(a (x - b))); the angle is that of its steepest slope, |a| c/4, at x = b.
 #include "dynamics/step_buffers.h"
 
 #include <math.h>
@@ -35,52 +35,109 @@ static int64_t measure_heights(const scree_simulation *s, scree_repose *repose)
     return num_filled;
 }
 
-/// For given a and b the best c is linear; returns the sum of squares with it.
-static double fit_height(scree_repose *repose, double steepness, double middle)
+/// Parameters of the sigmoid: height c, steepness a, middle b.
+enum
 {
-    double sum_gh = 0, sum_gg = 0, sum = 0;
+    HEIGHT,
+    STEEPNESS,
+    MIDDLE,
+    NUM_PARAMETERS
+};
+
+/// Sum of squared errors; with `normal` also the normal equations J^T J and -J^T r as rows of four.
+static double sum_squares(const scree_repose *repose, const double p[NUM_PARAMETERS], double normal[3][4])
+{
+    double sum = 0;
+    if (normal != NULL)
+        for (int k = 0; k < 12; ++k) normal[k / 4][k % 4] = 0;
     for (int64_t k = 0; k < repose->num_bins; ++k)
     {
-        const double g = 1 / (1 + exp(steepness * (repose->bin_x[k] - middle)));
-        sum_gh += g * repose->bin_height[k];
-        sum_gg += g * g;
-    }
-    const double height = sum_gg > 0 ? sum_gh / sum_gg : 0;
-    for (int64_t k = 0; k < repose->num_bins; ++k)
-    {
-        const double g = 1 / (1 + exp(steepness * (repose->bin_x[k] - middle)));
-        const double error = height * g - repose->bin_height[k];
+        const double along = repose->bin_x[k] - p[MIDDLE];
+        const double g = 1 / (1 + exp(p[STEEPNESS] * along)), slope = -p[HEIGHT] * g * (1 - g);
+        const double jacobian[3] = {g, slope * along, -slope * p[STEEPNESS]};
+        const double error = p[HEIGHT] * g - repose->bin_height[k];
         sum += error * error;
+        for (int row = 0; normal != NULL && row < 3; ++row)
+        {
+            for (int column = 0; column < 3; ++column) normal[row][column] += jacobian[row] * jacobian[column];
+            normal[row][3] -= jacobian[row] * error;
+        }
     }
-    repose->height = height;
-    repose->steepness = steepness;
-    repose->middle = middle;
     return sum;
 }
 
-/// Best fit over a grid of (a, b), halved around its best point until it no longer moves: no start value to guess.
+/// Solves three equations in rows of four by elimination with row exchange. False if they are singular.
+static bool solve(double m[3][4], double x[3])
+{
+    for (int k = 0; k < 3; ++k)
+    {
+        int pivot = k;
+        for (int row = k + 1; row < 3; ++row)
+            if (fabs(m[row][k]) > fabs(m[pivot][k])) pivot = row;
+        if (!(fabs(m[pivot][k]) > 0)) return false;
+        for (int c = 0; c < 4; ++c)
+        {
+            const double kept = m[k][c];
+            m[k][c] = m[pivot][c];
+            m[pivot][c] = kept;
+        }
+        for (int row = k + 1; row < 3; ++row)
+        {
+            const double factor = m[row][k] / m[k][k];
+            for (int c = k; c < 4; ++c) m[row][c] -= factor * m[k][c];
+        }
+    }
+    for (int k = 2; k >= 0; --k)
+    {
+        x[k] = m[k][3];
+        for (int c = k + 1; c < 3; ++c) x[k] -= m[k][c] * x[c];
+        x[k] /= m[k][k];
+    }
+    return true;
+}
+
+/// Improves p until it no longer gets better (Levenberg 1944, Marquardt 1963). The middle stays where there are bins: a
+/// steepest slope outside of them would be extrapolated. Returns the sum of squares.
+static double improve(const scree_repose *repose, double p[NUM_PARAMETERS], double from, double to)
+{
+    double damping = 1e-3, best = sum_squares(repose, p, NULL);
+    for (int round = 0; round < 200 && damping < 1e12; ++round)
+    {
+        double normal[3][4], change[3], next[3];
+        sum_squares(repose, p, normal);
+        for (int k = 0; k < 3; ++k) normal[k][k] *= 1 + damping;
+        if (!solve(normal, change)) break;
+        for (int k = 0; k < 3; ++k) next[k] = p[k] + change[k];
+        next[MIDDLE] = fmin(fmax(next[MIDDLE], from), to);
+        const double sum = sum_squares(repose, next, NULL);
+        if (sum < best)
+        {
+            best = sum;
+            damping *= 0.1;
+            for (int k = 0; k < 3; ++k) p[k] = next[k];
+        }
+        else damping *= 10;
+    }
+    return best;
+}
+
+/// Best of several starts: heaps to the left and to the right, steep and flat.
 static double fit_sigmoid(scree_repose *repose, double from, double to)
 {
-    const double length = to - from;
-    double steepness = 0, middle = 0.5 * (from + to), best = fit_height(repose, 0, middle);
-    double range_a = 80 / length, range_b = length;
-    for (int round = 0; round < 60; ++round)
+    double highest = 0, best = INFINITY;
+    for (int64_t k = 0; k < repose->num_bins; ++k) highest = fmax(highest, repose->bin_height[k]);
+    for (int start = 0; start < 18; ++start)
     {
-        const double centre_a = steepness, centre_b = middle;
-        for (int p = -8; p <= 8; ++p)
-            for (int q = -8; q <= 8; ++q)
-            {
-                const double a = centre_a + range_a * p / 8, b = centre_b + range_b * q / 8;
-                const double sum = fit_height(repose, a, b);
-                if (!(sum < best)) continue;
-                best = sum;
-                steepness = a;
-                middle = b;
-            }
-        range_a *= 0.6;
-        range_b *= 0.6;
+        const double steepness[] = {-40, -12, -4, 4, 12, 40};
+        double p[] = {highest, steepness[start % 6] / (to - from), from + (to - from) * (0.25 + 0.25 * (start / 6))};
+        const double sum = improve(repose, p, from, to);
+        if (!(sum < best)) continue;
+        best = sum;
+        repose->height = p[HEIGHT];
+        repose->steepness = p[STEEPNESS];
+        repose->middle = p[MIDDLE];
     }
-    return fit_height(repose, steepness, middle);
+    return best;
 }
 
 scree_status scree_simulation_repose(const scree_simulation *simulation, scree_repose *repose)
@@ -91,6 +148,6 @@ scree_status scree_simulation_repose(const scree_simulation *simulation, scree_r
     if (measure_heights(simulation, repose) < 4) return SCREE_INVALID_INPUT;
     const double sum = fit_sigmoid(repose, def->from, def->to);
     repose->residual = sqrt(sum / (double)repose->num_bins);
-    repose->angle_degrees = atan(fabs(repose->steepness) * repose->height / 4) * 180 / 3.14159265358979323846;
+    repose->angle_degrees = atan(fabs(repose->steepness * repose->height) / 4) * 180 / 3.14159265358979323846;
     return SCREE_OK;
 }

@@ -136,7 +136,7 @@ extern "C"
     {
         double end;           ///< [s]
         double step;          ///< [s]; auto: from the stiffness of the contacts
-        double step_fraction; ///< [1] share of the critical step that auto takes, default 0.15
+        double step_fraction; ///< [1] share of the critical step that auto takes, default 0.5
     } scree_time_def;
 
     /// Intervals of output; 0 switches that output off.

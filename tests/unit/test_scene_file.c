@@ -186,7 +186,7 @@ static void test_defaults(void)
     const scree_scene *s = &file.scene;
     if (file.owned == NULL) return;
     SCREE_CHECK(strcmp(s->name, "scene") == 0 && equal3(s->gravity, 0, 0, -9.81));
-    SCREE_CHECK(isnan(s->time.step) && s->time.step_fraction == 0.15);
+    SCREE_CHECK(isnan(s->time.step) && s->time.step_fraction == 0.5);
     SCREE_CHECK(isnan(s->materials[0].shear_modulus));
     const scree_contact_law_def *law = s->contact_laws;
     SCREE_CHECK(strcmp(law->model, "volumetric_hertz_mindlin") == 0 && isnan(law->restitution_coefficient));

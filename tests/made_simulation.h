@@ -64,6 +64,7 @@ static inline void made_simulation_set_contacts(made_simulation *made, int64_t n
         c->patch[k] = is_wall ? 0 : (int32_t)k;
         c->volume[k] = (scree_real)(x * 1e-9);
         c->indentation[k] = (scree_real)(x * 1e-4);
+        c->radius[k] = (scree_real)(x * 1e-3);
         c->normal[k] = scree_vec3_make(0, 0, 1);
         c->area_vector[k] = scree_vec3_make(0, 0, (scree_real)-x);
         c->arm[k] = scree_vec3_make((scree_real)x, 0, -1);

@@ -5,7 +5,7 @@
 #include "scree/io.h"
 
 #include <errno.h>
-#include <limits.h>
+#include <hdf5.h>
 #include <math.h>
 #include <omp.h>
 #include <signal.h>
@@ -418,7 +418,7 @@ static int conclude(run_state *run, scree_status status)
     if (saved == SCREE_OK) write_summary(run, "interrupted");
     tell_report(run);
     printf("stopped at t = %g s, %s\n", scree_simulation_time(run->simulation),
-           saved == SCREE_OK ? "checkpoint written" : "the checkpoint could not be written, the one before is kept");
+           saved == SCREE_OK ? "checkpoint written" : "no checkpoint could be written, one from before is kept");
     print_command_to_go_on(run);
     return status == SCREE_INTERRUPTED && saved == SCREE_OK ? 128 + (int)stop_signal : SCREE_EXIT_FAILED;
 }
@@ -484,6 +484,8 @@ static int run_scene(const run_request *request)
 
 int scree_run_command(int argc, char **argv)
 {
+    // all files are closed by the time the program ends; after a full disk HDF5's own closing then would crash
+    H5dont_atexit();
     run_request request = {.overrides = calloc((size_t)argc + 1, sizeof(const char *))};
     if (request.overrides == NULL) return SCREE_EXIT_FAILED;
     int exit_code = SCREE_EXIT_USAGE;

@@ -200,10 +200,12 @@ static scree_status save(const scree_simulation *simulation, const char *tempora
 {
     const hid_t file = scree_hdf5_create(temporary, report);
     if (file < 0) return SCREE_WRITE_FAILED;
-    const bool is_written = put_everything(file, simulation) && H5Fflush(file, H5F_SCOPE_LOCAL) >= 0;
+    bool is_written = put_everything(file, simulation);
     if (!is_written) scree_hdf5_fault(report, temporary, "written");
+    is_written = is_written && scree_hdf5_reserve(file, true, temporary, report);
+    if (!is_written) scree_hdf5_cut_off(file);
     const bool is_closed = H5Fclose(file) >= 0;
-    if (is_written && !is_closed) scree_hdf5_fault(report, temporary, "written");
+    if (is_written && !is_closed) scree_hdf5_fault(report, temporary, "closed");
     return is_written && is_closed ? SCREE_OK : SCREE_WRITE_FAILED;
 }
 

@@ -438,7 +438,7 @@ static void define(const scree_frames *frames, const scree_simulation *simulatio
         {{&scree_frame_particle, SCREE_VTKHDF_FIXED_POINTS},
          {&scree_frame_group, SCREE_VTKHDF_FIXED_POINTS},
          {&scree_frame_speed, SCREE_VTKHDF_POINTS}},
-        {num_frames, 3, num_frames * num_points, num_triangles + 1, 3 * num_triangles + 3, num_points}};
+        {num_frames, 3, num_frames * num_points, num_triangles + 1, 3 * num_triangles, num_points}};
     const scree_vtkhdf_def walls = {SCREE_VTKHDF_POLYGONS,
                                     1,
                                     {{&scree_frame_wall, SCREE_VTKHDF_POINTS}},

@@ -2,8 +2,19 @@
 #define _POSIX_C_SOURCE 200809L
 #include "io/hdf5_file.h"
 
+#include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum
+{
+    METADATA_BYTES = 65536,
+    HEAD_BYTES = 4096
+};
 
 scree_hdf5_printing scree_hdf5_silence(void)
 {
@@ -100,12 +111,26 @@ static hid_t access_properties(void)
     // closing a file closes what a failure left open in it
     H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);
     // metadata of a file close together, in few writes
-    H5Pset_meta_block_size(access, 65536);
+    H5Pset_meta_block_size(access, METADATA_BYTES);
     return access;
+}
+
+/// True if there is room for a small file. HDF5 1.10 must not learn otherwise while it makes one: it would crash when
+/// the program ends.
+static bool has_room(const char *path, scree_report *report)
+{
+    const int file = open(path, O_RDWR | O_CREAT | O_TRUNC, 0666);
+    const int error = file < 0 ? errno : posix_fallocate(file, 0, HEAD_BYTES);
+    if (file >= 0) close(file);
+    if (error == 0) return true;
+    scree_report_add(report, "%s could not be made: %s", path, strerror(error));
+    if (file >= 0) unlink(path);
+    return false;
 }
 
 hid_t scree_hdf5_create(const char *path, scree_report *report)
 {
+    if (!has_room(path, report)) return -1;
     const hid_t access = access_properties(), properties = scree_hdf5_properties(H5P_FILE_CREATE);
     const hid_t file = H5Fcreate(path, H5F_ACC_TRUNC, properties, access);
     if (file < 0) scree_hdf5_fault(report, path, "made");
@@ -121,6 +146,58 @@ hid_t scree_hdf5_open(const char *path, bool is_writable, scree_report *report)
     if (file < 0) scree_hdf5_fault(report, path, "opened");
     H5Pclose(access);
     return file;
+}
+
+bool scree_hdf5_reserve(hid_t file, bool is_all, const char *path, scree_report *report)
+{
+    void *handle = NULL;
+    hsize_t size = 0;
+    int error = EIO;
+    // the driver of these files keeps its file descriptor there
+    if (H5Fget_vfd_handle(file, H5P_DEFAULT, &handle) >= 0 && H5Fget_filesize(file, &size) >= 0)
+    {
+        const off_t num_reserved = is_all || size < METADATA_BYTES ? (off_t)size : METADATA_BYTES;
+        error = ftruncate(*(int *)handle, (off_t)size) != 0 ? errno : 0;
+        if (error == 0 && num_reserved > 0) error = posix_fallocate(*(int *)handle, 0, num_reserved);
+    }
+    if (error != 0) scree_report_add(report, "%s could not be written: %s", path, strerror(error));
+    return error == 0;
+}
+
+/// A file in memory that has no name.
+static int open_nowhere(void)
+{
+    char name[64];
+    snprintf(name, sizeof name, "/scree_%ld", (long)getpid());
+    const int nowhere = shm_open(name, O_RDWR | O_CREAT | O_EXCL, 0600);
+    if (nowhere < 0) return open("/dev/null", O_RDWR);
+    shm_unlink(name);
+    return nowhere;
+}
+
+/// The structure of the file as far as it is on the disk, which HDF5 may still read, and its length.
+static void copy_structure(int from, int to)
+{
+    struct stat info;
+    if (fstat(from, &info) == 0 && ftruncate(to, info.st_size) != 0) return;
+    char block[4096];
+    for (off_t place = 0; place < 2 * METADATA_BYTES; place += (off_t)sizeof block)
+    {
+        const ssize_t num = pread(from, block, sizeof block, place);
+        if (num <= 0 || pwrite(to, block, (size_t)num, place) != num) return;
+    }
+}
+
+void scree_hdf5_cut_off(hid_t file)
+{
+    void *handle = NULL;
+    const int nowhere = open_nowhere();
+    if (nowhere >= 0 && H5Fget_vfd_handle(file, H5P_DEFAULT, &handle) >= 0)
+    {
+        copy_structure(*(int *)handle, nowhere);
+        dup2(nowhere, *(int *)handle);
+    }
+    if (nowhere >= 0) close(nowhere);
 }
 
 hid_t scree_hdf5_properties(hid_t cls)

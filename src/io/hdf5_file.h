@@ -32,6 +32,12 @@ hid_t scree_hdf5_file_type(scree_field_type type);
 hid_t scree_hdf5_create(const char *path, scree_report *report);
 /// Existing file. Negative on failure; the reason goes to the report.
 hid_t scree_hdf5_open(const char *path, bool is_writable, scree_report *report);
+/// Makes sure of the disk space of the file's structure (`is_all`: of all it holds) before it is first flushed, since
+/// HDF5 1.10 does not survive a failure there. False if there is none; the reason goes to the report.
+bool scree_hdf5_reserve(hid_t file, bool is_all, const char *path, scree_report *report);
+/// After a failed write: leaves the file on the disk as it is, whatever is written or closed later. HDF5 1.10 cannot
+/// close a file whose last bytes do not find room: it fails, and crashes when the program ends.
+void scree_hdf5_cut_off(hid_t file);
 /// Property list for groups or datasets (cls as for H5Pcreate) without time stamps.
 hid_t scree_hdf5_properties(hid_t cls);
 

@@ -25,7 +25,6 @@ enum
     COLUMN_ARRAY_OFFSETS = SCREE_VTKHDF_ARRAYS + SCREE_VTKHDF_MAX_ARRAYS,
     NUM_COLUMNS = COLUMN_ARRAY_OFFSETS + SCREE_VTKHDF_MAX_ARRAYS,
     NUM_TOPOLOGIES = 4,
-    NUM_DUMMY_IDS = 3,
     COPY_BYTES = 1 << 22
 };
 
@@ -72,6 +71,7 @@ struct scree_vtkhdf_file
     hid_t file;
     hid_t values;
     hid_t num_steps;  ///< attribute
+    bool is_lost;     ///< a write has failed
     double last_time; ///< [s] of the last step; -infinity if there is none
     column columns[NUM_COLUMNS];
 };
@@ -175,6 +175,15 @@ static void close_datasets(scree_vtkhdf_file *file)
     file->values = file->num_steps = 0;
 }
 
+/// Tells why the last call failed; the file on the disk stays as it is.
+static scree_status write_fault(scree_vtkhdf_file *file, scree_report *report)
+{
+    scree_hdf5_fault(report, file->path, "written");
+    scree_hdf5_cut_off(file->file);
+    file->is_lost = true;
+    return SCREE_WRITE_FAILED;
+}
+
 // ---- creation
 
 static bool create_group(hid_t file, const char *path)
@@ -275,22 +284,21 @@ static scree_status create_file(scree_vtkhdf_file *file, const char *path, scree
     memset(file->columns, 0, sizeof file->columns);
     file->file = scree_hdf5_create(path, report);
     if (file->file < 0) return SCREE_WRITE_FAILED;
-    if (create_skeleton(file) && create_columns(file) && create_times(file)) return SCREE_OK;
-    scree_hdf5_fault(report, path, "written");
+    if (!create_skeleton(file) || !create_columns(file) || !create_times(file)) return write_fault(file, report);
+    if (scree_hdf5_reserve(file->file, false, path, report)) return SCREE_OK;
+    scree_hdf5_cut_off(file->file);
     return SCREE_WRITE_FAILED;
 }
 
-/// The part without cells and the one that is never shown.
+/// The part without cells and the one that is never shown, whose cell has no points.
 static bool write_first_parts(scree_vtkhdf_file *file)
 {
-    static const int64_t points[2] = {0, 0}, cells[2] = {0, 1}, ids[2] = {0, NUM_DUMMY_IDS};
-    static const int32_t offsets[3] = {0, 0, NUM_DUMMY_IDS}, connectivity[NUM_DUMMY_IDS] = {0, 0, 0};
+    static const int64_t none[2] = {0, 0}, cells[2] = {0, 1};
+    static const int32_t offsets[3] = {0, 0, 0};
     file->num_used[SCREE_VTKHDF_PARTS] = 2;
     file->num_used[SCREE_VTKHDF_CELLS] = 1;
-    file->num_used[SCREE_VTKHDF_IDS] = NUM_DUMMY_IDS;
-    return write_rows(file, COLUMN_NUM_POINTS, 0, 2, points) && write_rows(file, COLUMN_NUM_CELLS, 0, 2, cells) &&
-           write_rows(file, COLUMN_NUM_IDS, 0, 2, ids) && write_rows(file, SCREE_VTKHDF_OFFSETS, 0, 3, offsets) &&
-           write_rows(file, SCREE_VTKHDF_CONNECTIVITY, 0, NUM_DUMMY_IDS, connectivity);
+    return write_rows(file, COLUMN_NUM_POINTS, 0, 2, none) && write_rows(file, COLUMN_NUM_CELLS, 0, 2, cells) &&
+           write_rows(file, COLUMN_NUM_IDS, 0, 2, none) && write_rows(file, SCREE_VTKHDF_OFFSETS, 0, 3, offsets);
 }
 
 static char *path_with(const char *path, const char *ending)
@@ -340,11 +348,7 @@ scree_status scree_vtkhdf_create(scree_vtkhdf_file **file, const char *path, con
 
     const scree_hdf5_printing printing = scree_hdf5_silence();
     scree_status status = create_file(f, f->new_path, report);
-    if (status == SCREE_OK && !write_first_parts(f))
-    {
-        scree_hdf5_fault(report, f->new_path, "written");
-        status = SCREE_WRITE_FAILED;
-    }
+    if (status == SCREE_OK && !write_first_parts(f)) status = write_fault(f, report);
     if (status == SCREE_OK) *file = f;
     else
     {
@@ -415,11 +419,7 @@ static scree_status grow(scree_vtkhdf_file *file, scree_vtkhdf_extent extent, in
     scree_vtkhdf_file larger = *file;
     larger.capacity[extent] = num_rows > 2 * file->capacity[extent] ? num_rows : 2 * file->capacity[extent];
     scree_status status = create_file(&larger, path, report);
-    if (status == SCREE_OK && !copy_contents(file, &larger))
-    {
-        scree_hdf5_fault(report, path, "written");
-        status = SCREE_WRITE_FAILED;
-    }
+    if (status == SCREE_OK && !copy_contents(file, &larger)) status = write_fault(&larger, report);
     if (status == SCREE_OK) status = rename_file(path, current_path(file), report);
     scree_vtkhdf_file *lost = status == SCREE_OK ? file : &larger;
     close_datasets(lost);
@@ -432,18 +432,21 @@ static scree_status grow(scree_vtkhdf_file *file, scree_vtkhdf_extent extent, in
 
 // ---- steps
 
+static scree_status check_alive(const scree_vtkhdf_file *file, scree_report *report)
+{
+    if (!file->is_lost) return SCREE_OK;
+    scree_report_add(report, "%s is not written to any more since a write has failed", file->path);
+    return SCREE_WRITE_FAILED;
+}
+
 scree_status scree_vtkhdf_write(scree_vtkhdf_file *file, int column, scree_vtkhdf_rows rows, const void *data,
                                 scree_report *report)
 {
     const scree_hdf5_printing printing = scree_hdf5_silence();
-    scree_status status = SCREE_OK;
-    if (rows.first + rows.num > column_capacity(file, column))
+    scree_status status = check_alive(file, report);
+    if (status == SCREE_OK && rows.first + rows.num > column_capacity(file, column))
         status = grow(file, file->columns[column].def.extent, rows.first + rows.num, report);
-    if (status == SCREE_OK && !write_rows(file, column, rows.first, rows.num, data))
-    {
-        scree_hdf5_fault(report, file->path, "written");
-        status = SCREE_WRITE_FAILED;
-    }
+    if (status == SCREE_OK && !write_rows(file, column, rows.first, rows.num, data)) status = write_fault(file, report);
     scree_hdf5_restore(printing);
     return status;
 }
@@ -498,15 +501,13 @@ scree_status scree_vtkhdf_add_step(scree_vtkhdf_file *file, const scree_vtkhdf_s
 {
     const scree_hdf5_printing printing = scree_hdf5_silence();
     const int64_t row = file->num_used[SCREE_VTKHDF_STEPS];
-    scree_status status = SCREE_OK;
-    if (row + 1 > file->capacity[SCREE_VTKHDF_STEPS]) status = grow(file, SCREE_VTKHDF_STEPS, row + 1, report);
+    scree_status status = check_alive(file, report);
+    if (status == SCREE_OK && row + 1 > file->capacity[SCREE_VTKHDF_STEPS])
+        status = grow(file, SCREE_VTKHDF_STEPS, row + 1, report);
     // first all that the step refers to, then the step
     if (status == SCREE_OK && (!write_step_rows(file, step, row) || H5Fflush(file->file, H5F_SCOPE_LOCAL) < 0 ||
                                !publish(file, row + 1, &step->time, 1)))
-    {
-        scree_hdf5_fault(report, file->path, "written");
-        status = SCREE_WRITE_FAILED;
-    }
+        status = write_fault(file, report);
     if (status == SCREE_OK && row == 0) status = rename_file(file->new_path, file->path, report);
     if (status == SCREE_OK)
     {
@@ -551,16 +552,13 @@ scree_status scree_vtkhdf_close(scree_vtkhdf_file *file, scree_report *report)
 {
     if (file == NULL) return SCREE_OK;
     const scree_hdf5_printing printing = scree_hdf5_silence();
-    const bool is_empty = file->num_used[SCREE_VTKHDF_STEPS] == 0;
-    if (is_empty) unlink(file->new_path);
-    close_datasets(file);
     scree_status status = SCREE_OK;
-    if (file->file >= 0 && H5Fclose(file->file) < 0 && !is_empty)
+    if (file->num_used[SCREE_VTKHDF_STEPS] == 0)
     {
-        scree_hdf5_fault(report, file->path, "closed");
-        status = SCREE_WRITE_FAILED;
+        unlink(file->new_path);
+        scree_hdf5_cut_off(file->file);
     }
-    file->file = -1;
+    else if (!file->is_lost && H5Fflush(file->file, H5F_SCOPE_LOCAL) < 0) status = write_fault(file, report);
     discard(file, status);
     scree_hdf5_restore(printing);
     return status;
@@ -633,7 +631,6 @@ static bool count_rows(scree_vtkhdf_file *file, int64_t num_steps)
     int64_t *used = file->num_used;
     used[SCREE_VTKHDF_PARTS] = 2;
     used[SCREE_VTKHDF_CELLS] = 1;
-    used[SCREE_VTKHDF_IDS] = NUM_DUMMY_IDS;
     for (int64_t k = 0; k < num_steps; ++k)
     {
         scree_vtkhdf_step step;

@@ -8,8 +8,8 @@
 /// one, which is renamed over it.
 ///
 /// Cells come in parts; a step shows one part, and several steps may show the same. Part 0 has no cells and is for
-/// steps with nothing to show; part 1 has one and is never shown: readers differ in how they count parts without cells
-/// (VTK 9.3: all parts; VTK 9.5 and later: none right before the part that is read), and agree on this arrangement.
+/// steps with nothing to show; part 1 has one without points and is never shown: readers differ in how they count parts
+/// without cells (VTK 9.3 counts all, VTK 9.7 not those right before the part it reads), and agree on this arrangement.
 #ifndef SCREE_VTKHDF_FILE_H
 #define SCREE_VTKHDF_FILE_H
 

@@ -75,8 +75,8 @@ static void find_gaps(const scree_cluster *restrict c, int32_t first, scree_box 
     }
 }
 
-/// Pairs of member m with the leaves first .. end - 1 of the list; what follows them up to a full row of lanes must be
-/// other leaves or empty boxes.
+/// Pairs of member m with the leaves first .. end - 1 of the list. Those that follow up to a full row of lanes are
+/// compared as well, so none of them may overlap it.
 static void compare_member(scree_cluster *c, scree_pair_list list, int32_t m, int32_t first, int32_t end)
 {
     const scree_box box = member_box(c, m);
@@ -92,7 +92,6 @@ static void compare_member(scree_cluster *c, scree_pair_list list, int32_t m, in
             num_hits += gaps[k] <= 0;
         }
     }
-    while (num_hits > 0 && hits[num_hits - 1] >= end) --num_hits;
     if (c->num_keys + num_hits > MAX_KEYS)
     {
         scree_pair_list_append(list, c->keys, c->num_keys);
@@ -105,9 +104,12 @@ static void compare_member(scree_cluster *c, scree_pair_list list, int32_t m, in
 /// Compares the members with the leaves in the list, and in the first round with each other; then drops those leaves.
 static void compare_cluster(scree_cluster *c, scree_pair_list list, bool is_first_round)
 {
-    for (int32_t l = 0; l < LANES; ++l) set_leaf(c, c->num_leaves + l, scree_box_empty(), 0);
+    const scree_real infinity = (scree_real)INFINITY;
+    const scree_box nowhere = {{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
+    for (int32_t l = 0; l < LANES; ++l) set_leaf(c, c->num_leaves + l, nowhere, 0);
     for (int32_t m = 0; m < c->num_members; ++m)
     {
+        // a member away from all others needs none of them
         const bool has_others = c->num_leaves > c->num_members && scree_box_overlaps(member_box(c, m), c->others);
         compare_member(c, list, m, is_first_round ? m + 1 : c->num_members,
                        has_others ? c->num_leaves : c->num_members);

@@ -92,8 +92,7 @@ SCREE_FN void scree_lbvh_hierarchy_at(scree_lbvh_hierarchy_args a, int64_t i)
     const int32_t prefix = scree_lbvh_common_prefix(a, i, other);
     int64_t offset = 0;
     for (int64_t step = max_length / 2; step > 0; step /= 2)
-        if (offset + step < length && scree_lbvh_common_prefix(a, i, i + (offset + step) * direction) > prefix)
-            offset += step;
+        if (scree_lbvh_common_prefix(a, i, i + (offset + step) * direction) > prefix) offset += step;
     const int64_t split = direction > 0 ? i + offset : i - offset - 1;
     a.first_leaf[split] = (int32_t)(direction > 0 ? i : other);
     a.last_leaf[split] = (int32_t)(direction > 0 ? other : i);

@@ -102,6 +102,20 @@ static void test_all_pairs(void)
     free(boxes);
 }
 
+/// Boxes as large as numbers go, and a small one: all meet, and nothing else is found.
+static void test_largest_boxes(void)
+{
+    scree_box boxes[3] = {make_box(0, 0, 0, 1), make_box(0, 0, 0, (double)SCREE_REAL_MAX),
+                          make_box(0, 0, 0, (double)SCREE_REAL_MAX)};
+    const scree_broad_phase_input input = {.boxes = boxes, .num_particles = 3};
+    const int32_t expected[3][2] = {{0, 1}, {0, 2}, {1, 2}};
+    scree_broad_phase broad_phase = {0};
+    SCREE_CHECK(scree_broad_phase_find(&broad_phase, &input) == SCREE_OK);
+    check_pairs(&broad_phase, expected, 3);
+    check_valid(&broad_phase, &input);
+    scree_broad_phase_destroy(&broad_phase);
+}
+
 /// Tree over the boxes of six triangles that make a floor of 6 x 1 at z = 0, in the wall's frame.
 static scree_lbvh make_floor(void)
 {
@@ -373,6 +387,28 @@ static void test_plain_kernels_find_the_same(void)
     destroy_crowd(&c);
 }
 
+/// Groups of 31 equal boxes and one beside them are subtrees of 32 leaves with 31 of them in the left half, so that
+/// blocks of nodes begin deep within the left half of a cluster. Each cluster must still be searched once.
+static void test_clusters_across_blocks(void)
+{
+    enum
+    {
+        NUM_GROUPS = 512,
+        NUM = 32 * NUM_GROUPS
+    };
+    scree_box *boxes = scree_test_alloc(NUM, sizeof *boxes);
+    for (int i = 0; i < NUM; ++i) boxes[i] = make_box(i / 32 + (i % 32 == 31 ? 0.4 : 0), 0, 0, 0.4);
+    scree_lbvh tree = {0};
+    SCREE_CHECK(scree_lbvh_build(&tree, boxes, NUM) == SCREE_OK);
+    int64_t num_keys = 0;
+    const scree_particle_pairs_args args = {tree.view, {NULL, &num_keys, 0, 15}}; // only counted
+    scree_particle_pairs_find(args);
+    // within a group all, and the last box of a group with all but the last of the next one: 1 - 0.4 < 2 0.4 < 1
+    SCREE_CHECK_INT(num_keys, NUM_GROUPS * (32 * 31 / 2) + (NUM_GROUPS - 1) * 31);
+    scree_lbvh_destroy(&tree);
+    free(boxes);
+}
+
 /// Rows in any order of the kernels' indices.
 static void test_rows_in_any_order(void)
 {
@@ -490,10 +526,12 @@ int main(void)
     SCREE_RUN(test_chain);
     SCREE_RUN(test_grids_and_sizes);
     SCREE_RUN(test_all_pairs);
+    SCREE_RUN(test_largest_boxes);
     SCREE_RUN(test_walls);
     SCREE_RUN(test_nothing_to_find);
     SCREE_RUN(test_walls_are_rounded_outwards);
     SCREE_RUN(test_plain_kernels_find_the_same);
+    SCREE_RUN(test_clusters_across_blocks);
     SCREE_RUN(test_rows_in_any_order);
     SCREE_RUN(test_validation_sees_faults);
     SCREE_RUN(test_refusals); // before further threads take their share of the address space

@@ -84,6 +84,7 @@ typedef struct scene_counts
     uint64_t num_vertices;
     uint64_t num_triangles; ///< after cutting the polygons
     uint64_t num_others;    ///< points and lines
+    uint64_t num_astray;    ///< corners that name a vertex that is not there
     uint32_t max_corners;   ///< of one polygon
 } scene_counts;
 
@@ -100,9 +101,31 @@ static scene_counts count(const struct aiScene *scene)
             if (num < 3) ++counts.num_others;
             else counts.num_triangles += num - 2;
             if (num > counts.max_corners) counts.max_corners = num;
+            for (uint32_t k = 0; k < num; ++k) counts.num_astray += part->mFaces[i].mIndices[k] >= part->mNumVertices;
         }
     }
     return counts;
+}
+
+/// assimp hands on the corners of damaged files as they are.
+static bool has_corners_in_range(const struct aiScene *scene, const char *path, scree_report *report)
+{
+    for (unsigned int m = 0; m < scene->mNumMeshes; ++m)
+    {
+        const struct aiMesh *part = scene->mMeshes[m];
+        for (unsigned int i = 0; i < part->mNumFaces; ++i)
+        {
+            const struct aiFace *face = part->mFaces + i;
+            for (unsigned int k = 0; k < face->mNumIndices; ++k)
+            {
+                if (face->mIndices[k] < part->mNumVertices) continue;
+                scree_report_add(report, "%s: face %u refers to vertex %u; there are %u vertices", path, i,
+                                 face->mIndices[k], part->mNumVertices);
+                return false;
+            }
+        }
+    }
+    return true;
 }
 
 /// Room for cutting one polygon.
@@ -164,11 +187,19 @@ static void append_meshes(scree_mesh *mesh, const struct aiScene *scene, const p
 static scree_status take_scene(scree_mesh *mesh, const struct aiScene *scene, const char *path, scree_report *report)
 {
     const scene_counts counts = count(scene);
+    if (!has_corners_in_range(scene, path, report)) return SCREE_BAD_MESH;
     if (counts.num_vertices >= INT32_MAX || counts.num_triangles >= INT32_MAX / 3)
     {
         scree_report_add(report, "%s: has %" PRIu64 " vertices and %" PRIu64 " triangles; simplify it first", path,
                          counts.num_vertices, counts.num_triangles);
         return SCREE_TOO_MANY;
+    }
+    if (counts.num_astray > 0)
+    {
+        scree_report_add(report,
+                         "%s: cannot be read: %" PRIu64 " corners of its faces name vertices that it does not have",
+                         path, counts.num_astray);
+        return SCREE_READ_FAILED;
     }
     if (counts.num_others > 0)
         scree_report_warn(report, "%s: %" PRIu64 " points and lines were left out", path, counts.num_others);

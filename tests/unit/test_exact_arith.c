@@ -56,7 +56,7 @@ static void expansions_add_and_scale_exactly(void)
         const int64_t high = random_whole(50), low = random_whole(29);
         const int32_t num_a = scree_expansion_of_diff((double)low, (double)high * 0x1p30, a);
         const int32_t num_b = scree_expansion_of_diff((double)random_whole(53), (double)random_whole(20), b);
-        SCREE_CHECK(value_of(a, num_a) == (wide)low - ((wide)high << 30));
+        SCREE_CHECK(value_of(a, num_a) == (wide)low - (wide)high * (1 << 30));
         const int32_t num_sum = scree_expansion_add(a, num_a, b, num_b, sum);
         SCREE_CHECK(value_of(sum, num_sum) == value_of(a, num_a) + value_of(b, num_b));
         const int64_t factor = random_whole(40);

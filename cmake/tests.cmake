@@ -16,6 +16,7 @@ endif()
 # Tests of threads set their number themselves; elsewhere one thread per test lets two tests run side by side.
 set(test_environment "OMP_NUM_THREADS=1" "OMP_WAIT_POLICY=passive"
     "UBSAN_OPTIONS=print_stacktrace=1" "ASAN_OPTIONS=detect_stack_use_after_return=1:allocator_may_return_null=1"
+    "LSAN_OPTIONS=suppressions=${CMAKE_SOURCE_DIR}/tests/checks/leaks.txt:print_suppressions=0"
     "SCREE_SOURCE_DIR=${CMAKE_SOURCE_DIR}")
 if(CMAKE_BUILD_TYPE STREQUAL "Thread")
     list(REMOVE_ITEM test_environment "OMP_NUM_THREADS=1")

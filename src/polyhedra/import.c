@@ -84,7 +84,6 @@ typedef struct scene_counts
     uint64_t num_vertices;
     uint64_t num_triangles; ///< after cutting the polygons
     uint64_t num_others;    ///< points and lines
-    uint64_t num_astray;    ///< corners that name a vertex that is not there
     uint32_t max_corners;   ///< of one polygon
 } scene_counts;
 
@@ -101,7 +100,6 @@ static scene_counts count(const struct aiScene *scene)
             if (num < 3) ++counts.num_others;
             else counts.num_triangles += num - 2;
             if (num > counts.max_corners) counts.max_corners = num;
-            for (uint32_t k = 0; k < num; ++k) counts.num_astray += part->mFaces[i].mIndices[k] >= part->mNumVertices;
         }
     }
     return counts;
@@ -194,13 +192,6 @@ static scree_status take_scene(scree_mesh *mesh, const struct aiScene *scene, co
                          counts.num_vertices, counts.num_triangles);
         return SCREE_TOO_MANY;
     }
-    if (counts.num_astray > 0)
-    {
-        scree_report_add(report,
-                         "%s: cannot be read: %" PRIu64 " corners of its faces name vertices that it does not have",
-                         path, counts.num_astray);
-        return SCREE_READ_FAILED;
-    }
     if (counts.num_others > 0)
         scree_report_warn(report, "%s: %" PRIu64 " points and lines were left out", path, counts.num_others);
     polygon_buffers buffers = {0};
@@ -247,8 +238,7 @@ static scree_status join_corners(scree_mesh *mesh, const char *path, scree_repor
     const scree_status status = scree_mesh_weld(mesh, 0.0, path, NULL);
     if (status != SCREE_OK || mesh->num_vertices == 0) return status;
     // whoever wrote the file may have written one vertex in two ways, and each is read to within the rounding
-    const scree_box box = scree_mesh_box(mesh);
-    const double size = (double)scree_vec3_length(scree_vec3_sub(box.upper, box.lower));
+    const double size = scree_box_diagonal(scree_mesh_box(mesh));
     const double tolerance = size > 0.0 ? 2.0 * scree_mesh_import_rounding(mesh) / size : 0.0;
     return scree_mesh_mend(mesh, tolerance, path, report);
 }

@@ -48,6 +48,14 @@ scree_box scree_mesh_box(const scree_mesh *mesh)
     return box;
 }
 
+double scree_box_diagonal(scree_box box)
+{
+    const double x = (double)box.upper.x - (double)box.lower.x;
+    const double y = (double)box.upper.y - (double)box.lower.y;
+    const double z = (double)box.upper.z - (double)box.lower.z;
+    return sqrt(x * x + y * y + z * z);
+}
+
 static int compare_sides(const void *left, const void *right)
 {
     const scree_mesh_side *a = left;

@@ -33,6 +33,9 @@ int32_t scree_mesh_label_pieces(const scree_mesh *mesh, const int32_t *neighbour
 /// with a vertex of that piece, it is the piece's volume, with nothing lost far from the origin.
 double scree_mesh_six_volume(const scree_mesh *mesh, int32_t triangle, int32_t about);
 
+/// Length of the diagonal of a box, in double, so that nothing overflows or vanishes.
+double scree_box_diagonal(scree_box box);
+
 /// True if all coordinates are finite and within SCREE_EXACT_MAX and all indices are in range.
 bool scree_mesh_is_computable(const scree_mesh *mesh);
 

@@ -8,16 +8,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-static scree_real distance_squared(scree_vec3 p, scree_vec3 q)
+static double distance_squared(scree_vec3 p, scree_vec3 q)
 {
-    const scree_vec3 d = scree_vec3_sub(p, q);
-    return scree_vec3_dot(d, d);
+    const double x = (double)p.x - (double)q.x, y = (double)p.y - (double)q.y, z = (double)p.z - (double)q.z;
+    return x * x + y * y + z * z;
 }
 
 /// For each vertex the first one that stands for it: itself, or the lowest representative within `distance`.
-static scree_status find_representatives(const scree_mesh *mesh, scree_real distance, int32_t *representative)
+static scree_status find_representatives(const scree_mesh *mesh, double distance, int32_t *representative)
 {
-    const scree_vec3 margin = scree_vec3_make(distance, distance, distance);
+    // a little more than the distance, which a float may round down
+    const scree_real reach = (scree_real)(distance * (1.0 + (double)SCREE_REAL_EPSILON));
+    const scree_vec3 margin = scree_vec3_make(reach, reach, reach);
     scree_lbvh tree = {0};
     scree_box *boxes = malloc(((size_t)mesh->num_vertices + 1) * sizeof *boxes);
     if (boxes == NULL) return SCREE_OUT_OF_MEMORY;
@@ -65,16 +67,17 @@ static scree_status drop_unused_vertices(scree_mesh *mesh)
 static void tell_weld(const scree_mesh *mesh, const int32_t *representative, const char *name, scree_report *report)
 {
     int32_t num_welded = 0;
-    scree_real farthest = 0;
+    double farthest = 0.0;
     for (int32_t i = 0; i < mesh->num_vertices; ++i)
     {
         num_welded += representative[i] != i;
-        farthest = scree_max(farthest, distance_squared(mesh->vertices[i], mesh->vertices[representative[i]]));
+        const double square = distance_squared(mesh->vertices[i], mesh->vertices[representative[i]]);
+        if (square > farthest) farthest = square;
     }
     if (num_welded == 0) return;
-    if (farthest > 0)
+    if (farthest > 0.0)
         scree_report_warn(report, "%s: %d of %d vertices were joined with others, at most %.3g away", name, num_welded,
-                          mesh->num_vertices, sqrt((double)farthest));
+                          mesh->num_vertices, sqrt(farthest));
     else
         scree_report_warn(report, "%s: %d of %d vertices were joined with others in the same place", name, num_welded,
                           mesh->num_vertices);
@@ -82,11 +85,10 @@ static void tell_weld(const scree_mesh *mesh, const int32_t *representative, con
 
 scree_status scree_mesh_weld(scree_mesh *mesh, double tolerance, const char *name, scree_report *report)
 {
-    const scree_box box = scree_mesh_box(mesh);
-    const double size = (double)scree_vec3_length(scree_vec3_sub(box.upper, box.lower));
+    const double size = scree_box_diagonal(scree_mesh_box(mesh));
     int32_t *representative = malloc(((size_t)mesh->num_vertices + 1) * sizeof *representative);
     if (representative == NULL) return SCREE_OUT_OF_MEMORY;
-    scree_status status = find_representatives(mesh, (scree_real)(tolerance * size), representative);
+    scree_status status = find_representatives(mesh, tolerance * size, representative);
     if (status == SCREE_OK)
     {
         for (int32_t i = 0; i < mesh->num_triangles; ++i)

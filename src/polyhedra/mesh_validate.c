@@ -83,14 +83,36 @@ static void check_numbers(checker *c)
     }
 }
 
-/// Height over the longest side.
+/// Height over the longest side, of a triangle of any size.
 static double height_ratio(scree_vec3 a, scree_vec3 b, scree_vec3 c)
 {
-    const scree_vec3 ab = scree_vec3_sub(b, a), ac = scree_vec3_sub(c, a), bc = scree_vec3_sub(c, b);
-    double longest = (double)scree_vec3_dot(ab, ab);
-    if ((double)scree_vec3_dot(ac, ac) > longest) longest = (double)scree_vec3_dot(ac, ac);
-    if ((double)scree_vec3_dot(bc, bc) > longest) longest = (double)scree_vec3_dot(bc, bc);
-    return (double)scree_vec3_length(scree_vec3_cross(ab, ac)) / longest;
+    double ab[3] = {(double)b.x - (double)a.x, (double)b.y - (double)a.y, (double)b.z - (double)a.z};
+    double ac[3] = {(double)c.x - (double)a.x, (double)c.y - (double)a.y, (double)c.z - (double)a.z};
+    double largest = 0.0;
+    for (int i = 0; i < 3; ++i)
+    {
+        if (fabs(ab[i]) > largest) largest = fabs(ab[i]);
+        if (fabs(ac[i]) > largest) largest = fabs(ac[i]);
+    }
+    double squares[3] = {0.0, 0.0, 0.0};
+    for (int i = 0; i < 3; ++i)
+    {
+        ab[i] /= largest;
+        ac[i] /= largest;
+        squares[0] += ab[i] * ab[i];
+        squares[1] += ac[i] * ac[i];
+        squares[2] += (ac[i] - ab[i]) * (ac[i] - ab[i]);
+    }
+    double area = 0.0;
+    double longest = squares[0];
+    for (int i = 0; i < 3; ++i)
+    {
+        const int j = (i + 1) % 3;
+        const double n = ab[i] * ac[j] - ab[j] * ac[i];
+        area += n * n;
+        if (squares[i] > longest) longest = squares[i];
+    }
+    return sqrt(area) / longest;
 }
 
 static void check_triangles(checker *c)
@@ -364,7 +386,7 @@ typedef struct mesh_piece
 /// One piece against what its nesting wants. `depth` is the number of other pieces around it.
 static void check_piece(checker *c, const mesh_piece *piece, int32_t depth)
 {
-    const double length = (double)scree_vec3_length(scree_vec3_sub(piece->box.upper, piece->box.lower));
+    const double length = scree_box_diagonal(piece->box);
     // each of the determinants is wrong by less than 8 roundoffs of length^3, and adding them loses as much again
     const double noise = 16.0 * SCREE_ROUNDOFF * (double)piece->num_triangles * length * length * length;
     const bool is_cavity = depth % 2 == 1;

@@ -6,6 +6,7 @@
 #include "polyhedra/simplify.h"
 #include "polyhedra/generate_internal.h"
 #include "polyhedra/mass_properties.h"
+#include "polyhedra/mesh_edges.h"
 
 #include <float.h>
 #include <meshoptimizer.h>
@@ -29,19 +30,18 @@ enum
     NUM_ATTEMPTS = sizeof attempts / sizeof attempts[0]
 };
 
-/// Vertices in single precision as meshoptimizer wants them, about the middle of the box in units of its size.
+/// Vertices in single precision as meshoptimizer wants them, from the corner of the box in units of its diagonal.
 static float *single_positions(const scree_mesh *mesh)
 {
     const scree_box box = scree_mesh_box(mesh);
-    const scree_vec3 middle = scree_vec3_scale(scree_vec3_add(box.lower, box.upper), (scree_real)0.5);
-    const scree_real size = scree_vec3_length(scree_vec3_sub(box.upper, box.lower));
+    const double size = scree_box_diagonal(box);
     float *positions = malloc(3 * (size_t)mesh->num_vertices * sizeof *positions);
     for (int32_t i = 0; positions != NULL && i < mesh->num_vertices; ++i)
     {
-        const scree_vec3 r = scree_vec3_sub(mesh->vertices[i], middle);
-        positions[3 * (size_t)i] = (float)(r.x / size);
-        positions[3 * (size_t)i + 1] = (float)(r.y / size);
-        positions[3 * (size_t)i + 2] = (float)(r.z / size);
+        const scree_vec3 p = mesh->vertices[i];
+        positions[3 * (size_t)i] = (float)(((double)p.x - (double)box.lower.x) / size);
+        positions[3 * (size_t)i + 1] = (float)(((double)p.y - (double)box.lower.y) / size);
+        positions[3 * (size_t)i + 2] = (float)(((double)p.z - (double)box.lower.z) / size);
     }
     return positions;
 }

@@ -335,13 +335,34 @@ static void mending_repairs_what_is_safe_and_says_so(void)
     scree_mesh_destroy(&cube);
 }
 
+static void bodies_of_any_size_are_valid(void)
+{
+#ifdef SCREE_SINGLE
+    static const double scales[] = {1e-25, 1e-10, 1e10, 1e25};
+#else
+    static const double scales[] = {1e-85, 1e-30, 1e30, 1e85};
+#endif
+    for (int i = 0; i < 4; ++i)
+    {
+        scree_mesh mesh;
+        SCREE_CHECK_INT(scree_generate_sphere(&mesh, 1.0, 100), SCREE_OK);
+        scree_test_mesh_scale(&mesh, scales[i], scales[i], scales[i]);
+        SCREE_CHECK(scree_test_is_valid(&mesh, "sphere of any size"));
+        SCREE_CHECK_INT(scree_mesh_mend(&mesh, 1e-6, "sphere", NULL), SCREE_OK);
+        SCREE_CHECK_INT(mesh.num_vertices, 52);
+        scree_mesh_destroy(&mesh);
+    }
+}
+
 static void large_meshes_are_checked_in_time(void)
 {
     // quadratic work would take minutes: 2e5 triangles have 2e10 pairs
     scree_mesh mesh;
     SCREE_CHECK_INT(scree_generate_sphere(&mesh, 1.0, 200000), SCREE_OK);
     SCREE_CHECK(scree_test_is_valid(&mesh, "fine sphere"));
+#ifndef SCREE_SINGLE
     SCREE_CHECK(scree_mesh_is_convex(&mesh));
+#endif
     mesh.vertices[777] = scree_vec3_scale(mesh.vertices[777], (scree_real)-1.001);
     refuses(mesh, "touch or pass through each other");
 }
@@ -359,6 +380,7 @@ int main(void)
     SCREE_RUN(pieces_are_oriented_by_their_nesting);
     SCREE_RUN(all_faults_are_told_at_once_but_not_without_end);
     SCREE_RUN(mending_repairs_what_is_safe_and_says_so);
+    SCREE_RUN(bodies_of_any_size_are_valid);
     SCREE_RUN(large_meshes_are_checked_in_time);
     return SCREE_TEST_END();
 }

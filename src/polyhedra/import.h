@@ -6,7 +6,8 @@
 #include "polyhedra/mesh.h"
 
 /// Reads OBJ, STL, PLY or OFF, welds, mends what is safe, validates. Everything said goes to the report, faults with
-/// their place. SCREE_NOT_FOUND, SCREE_READ_FAILED, SCREE_BAD_MESH.
+/// their place: coordinates, and numbers that count from 0 in the order of the file's faces and their first corners.
+/// SCREE_NOT_FOUND, SCREE_READ_FAILED, SCREE_BAD_MESH.
 scree_status scree_mesh_import(scree_mesh *mesh, const char *path, scree_report *report);
 /// Largest amount by which the importer may have rounded a coordinate of this mesh, which it keeps in single precision
 /// [m].

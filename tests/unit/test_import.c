@@ -9,10 +9,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/// assimp does not free everything when it gives up on a damaged file; the leak sanitizer asks here what to pass over.
-const char *__lsan_default_suppressions(void);
-const char *__lsan_default_suppressions(void) { return "leak:libassimp"; }
-
 static char folder[64];
 static char path[384];
 

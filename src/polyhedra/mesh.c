@@ -89,6 +89,30 @@ scree_mesh_side *scree_mesh_sides_create(const scree_mesh *mesh)
     return sides;
 }
 
+static int compare_places(const void *left, const void *right)
+{
+    const scree_mesh_place *a = left;
+    const scree_mesh_place *b = right;
+    if (a->point.x != b->point.x) return a->point.x < b->point.x ? -1 : 1;
+    if (a->point.y != b->point.y) return a->point.y < b->point.y ? -1 : 1;
+    if (a->point.z != b->point.z) return a->point.z < b->point.z ? -1 : 1;
+    return (a->vertex > b->vertex) - (a->vertex < b->vertex);
+}
+
+scree_mesh_place *scree_mesh_places_create(const scree_mesh *mesh)
+{
+    scree_mesh_place *places = malloc(((size_t)mesh->num_vertices + 1) * sizeof *places);
+    if (places == NULL) return NULL;
+    for (int32_t i = 0; i < mesh->num_vertices; ++i) places[i] = (scree_mesh_place){mesh->vertices[i], i};
+    qsort(places, (size_t)mesh->num_vertices, sizeof *places, compare_places);
+    return places;
+}
+
+bool scree_mesh_places_coincide(const scree_mesh_place *a, const scree_mesh_place *b)
+{
+    return a->point.x == b->point.x && a->point.y == b->point.y && a->point.z == b->point.z;
+}
+
 int64_t scree_mesh_side_group(const scree_mesh_side *sides, int64_t num_sides, int64_t begin)
 {
     int64_t end = begin + 1;

@@ -33,6 +33,17 @@ int32_t scree_mesh_label_pieces(const scree_mesh *mesh, const int32_t *neighbour
 /// with a vertex of that piece, it is the piece's volume, with nothing lost far from the origin.
 double scree_mesh_six_volume(const scree_mesh *mesh, int32_t triangle, int32_t about);
 
+/// A vertex by its place.
+typedef struct scree_mesh_place
+{
+    scree_vec3 point;
+    int32_t vertex;
+} scree_mesh_place;
+
+/// All vertices, sorted by x, y, z and then by index; owned by the caller, free() it. NULL: out of memory.
+scree_mesh_place *scree_mesh_places_create(const scree_mesh *mesh);
+bool scree_mesh_places_coincide(const scree_mesh_place *a, const scree_mesh_place *b);
+
 /// Length of the diagonal of a box, in double, so that nothing overflows or vanishes.
 double scree_box_diagonal(scree_box box);
 

@@ -14,31 +14,65 @@ static double distance_squared(scree_vec3 p, scree_vec3 q)
     return x * x + y * y + z * z;
 }
 
-/// For each vertex the first one that stands for it: itself, or the lowest representative within `distance`.
-static scree_status find_representatives(const scree_mesh *mesh, double distance, int32_t *representative)
+/// For each vertex the first one in the same place.
+static scree_status join_coincident(const scree_mesh *mesh, int32_t *representative)
+{
+    scree_mesh_place *places = scree_mesh_places_create(mesh);
+    if (places == NULL) return SCREE_OUT_OF_MEMORY;
+    for (int32_t i = 0; i < mesh->num_vertices; ++i)
+    {
+        const bool is_again = i > 0 && scree_mesh_places_coincide(places + i - 1, places + i);
+        representative[places[i].vertex] = is_again ? representative[places[i - 1].vertex] : places[i].vertex;
+    }
+    free(places);
+    return SCREE_OK;
+}
+
+/// Lets representatives within `distance` of one with a lower number be represented by the lowest such.
+static scree_status join_near(const scree_mesh *mesh, double distance, int32_t *representative)
 {
     // a little more than the distance, which a float may round down
     const scree_real reach = (scree_real)(distance * (1.0 + (double)SCREE_REAL_EPSILON));
     const scree_vec3 margin = scree_vec3_make(reach, reach, reach);
     scree_lbvh tree = {0};
     scree_box *boxes = malloc(((size_t)mesh->num_vertices + 1) * sizeof *boxes);
-    if (boxes == NULL) return SCREE_OUT_OF_MEMORY;
-    for (int32_t i = 0; i < mesh->num_vertices; ++i) boxes[i] = (scree_box){mesh->vertices[i], mesh->vertices[i]};
-    const scree_status status = scree_lbvh_build(&tree, boxes, mesh->num_vertices);
+    int32_t *vertex_of = malloc(((size_t)mesh->num_vertices + 1) * sizeof *vertex_of);
+    scree_status status = boxes != NULL && vertex_of != NULL ? SCREE_OK : SCREE_OUT_OF_MEMORY;
+    int32_t num = 0;
     for (int32_t i = 0; status == SCREE_OK && i < mesh->num_vertices; ++i)
     {
+        if (representative[i] != i) continue;
+        vertex_of[num] = i;
+        boxes[num++] = (scree_box){mesh->vertices[i], mesh->vertices[i]};
+    }
+    if (status == SCREE_OK) status = scree_lbvh_build(&tree, boxes, num);
+    for (int32_t k = 0; status == SCREE_OK && k < num; ++k)
+    {
+        const int32_t i = vertex_of[k];
         const scree_vec3 p = mesh->vertices[i];
         const scree_box query = {scree_vec3_sub(p, margin), scree_vec3_add(p, margin)};
         int32_t next = tree.view.root;
-        representative[i] = i;
-        for (int32_t j; (j = scree_lbvh_next_overlap(tree.view, query, next, &next)) >= 0;)
+        for (int32_t l; (l = scree_lbvh_next_overlap(tree.view, query, next, &next)) >= 0;)
         {
+            const int32_t j = vertex_of[l];
             if (j >= representative[i] || representative[j] != j) continue;
             if (distance_squared(p, mesh->vertices[j]) <= distance * distance) representative[i] = j;
         }
     }
     scree_lbvh_destroy(&tree);
     free(boxes);
+    free(vertex_of);
+    return status;
+}
+
+/// For each vertex the one that stands for it.
+static scree_status find_representatives(const scree_mesh *mesh, double distance, int32_t *representative)
+{
+    scree_status status = join_coincident(mesh, representative);
+    if (status == SCREE_OK && distance > 0.0) status = join_near(mesh, distance, representative);
+    // those that stood for others may now be represented themselves, by one of lower number, which is final
+    for (int32_t i = 0; status == SCREE_OK && i < mesh->num_vertices; ++i)
+        representative[i] = representative[representative[i]];
     return status;
 }
 

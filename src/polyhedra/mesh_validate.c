@@ -266,36 +266,15 @@ static void check_fans(checker *c)
     }
 }
 
-typedef struct placed_vertex
-{
-    scree_vec3 p;
-    int32_t vertex;
-} placed_vertex;
-
-static int compare_places(const void *left, const void *right)
-{
-    const placed_vertex *a = left;
-    const placed_vertex *b = right;
-    if (a->p.x != b->p.x) return a->p.x < b->p.x ? -1 : 1;
-    if (a->p.y != b->p.y) return a->p.y < b->p.y ? -1 : 1;
-    if (a->p.z != b->p.z) return a->p.z < b->p.z ? -1 : 1;
-    return (a->vertex > b->vertex) - (a->vertex < b->vertex);
-}
-
 static scree_status check_coincident(checker *c)
 {
-    const int32_t num = c->mesh->num_vertices;
-    placed_vertex *places = malloc((size_t)num * sizeof *places);
+    scree_mesh_place *places = scree_mesh_places_create(c->mesh);
     if (places == NULL) return SCREE_OUT_OF_MEMORY;
-    for (int32_t i = 0; i < num; ++i) places[i] = (placed_vertex){vertex(c, i), i};
-    qsort(places, (size_t)num, sizeof *places, compare_places);
-    for (int32_t i = 1; i < num; ++i)
+    for (int32_t i = 1; i < c->mesh->num_vertices; ++i)
     {
-        const scree_vec3 p = places[i - 1].p;
-        const scree_vec3 q = places[i].p;
-        if (p.x != q.x || p.y != q.y || p.z != q.z || !is_told(c, FAULT_VERTEX)) continue;
+        if (!scree_mesh_places_coincide(places + i - 1, places + i) || !is_told(c, FAULT_VERTEX)) continue;
         scree_report_add(c->report, "%s: vertices %d and %d coincide at " POINT_FORMAT "; join them", c->name,
-                         places[i - 1].vertex, places[i].vertex, POINT(p));
+                         places[i - 1].vertex, places[i].vertex, POINT(places[i].point));
     }
     free(places);
     return SCREE_OK;

@@ -1,6 +1,6 @@
 /// \file lbvh.c
 /// Order of a build: bounds of the middles, Morton codes, sort, hierarchy, nodes, boxes from the leaves upwards.
-/// Linear in the number of boxes; about 190 bytes per box, nodes included.
+/// Linear in the number of boxes; about 150 bytes per box, nodes included.
 #include "bvh/lbvh.h"
 
 #include "bvh/bvh_launch.h"

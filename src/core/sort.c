@@ -34,7 +34,9 @@ scree_status scree_sort_reserve(scree_sort_buffers *buffers, int64_t num_items, 
     grown.max_items = num_items <= buffers->max_items ? buffers->max_items : num_items;
     grown.keys = scree_buffer_alloc(grown.max_items, sizeof *grown.keys);
     grown.spare_keys = scree_buffer_alloc(grown.max_items, sizeof *grown.keys);
-    grown.counts = scree_buffer_alloc(MAX_CHUNKS * NUM_DIGITS, sizeof *grown.counts);
+    const int64_t max_chunks = grown.max_items / MIN_CHUNK_ITEMS + 1;
+    grown.counts =
+        scree_buffer_alloc((max_chunks < MAX_CHUNKS ? max_chunks : MAX_CHUNKS) * NUM_DIGITS, sizeof *grown.counts);
     bool is_complete = grown.keys != NULL && grown.spare_keys != NULL && grown.counts != NULL;
     if (grown.has_values)
     {

@@ -57,12 +57,13 @@ SCREE_FN void scree_index_build(scree_box_index *index, const scree_box *boxes, 
 {
     index->boxes = boxes;
     index->num = num;
+    index->region = region;
+    index->scale = scree_vec3_zero();
     if (num <= SCREE_INDEX_DIRECT) return;
     const scree_vec3 l = region.lower;
     const scree_vec3 u = region.upper;
     const scree_vec3 s =
         scree_vec3_make(scree_index_scale(l.x, u.x), scree_index_scale(l.y, u.y), scree_index_scale(l.z, u.z));
-    index->region = region;
     index->scale = s;
     for (int32_t axis = 0; axis < 3; ++axis)
     {

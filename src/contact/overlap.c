@@ -23,6 +23,7 @@ static bool reserve_pieces(scree_overlap_body *body, int32_t max)
     body->max_edges = 0;
     bool is_done = renew(&body->points, max, sizeof *body->points);
     is_done = renew(&body->vertex_id, max, sizeof *body->vertex_id) && is_done;
+    is_done = renew(&body->along, max, sizeof *body->along) && is_done;
     is_done = renew(&body->outcode, max, sizeof *body->outcode) && is_done;
     is_done = renew(&body->kept, max, sizeof *body->kept) && is_done;
     is_done = renew(&body->inside, max, sizeof *body->inside) && is_done;
@@ -69,7 +70,7 @@ scree_overlap_workspace *scree_overlap_workspace_create(void)
     bool is_done = reserve_crossings(&workspace->slice, 64);
     for (int side = 0; side < 2; ++side)
     {
-        is_done = reserve_pieces(workspace->slice.body + side, 128) && is_done;
+        is_done = reserve_pieces(workspace->slice.body + side, 512) && is_done;
         is_done = reserve_shape(workspace->slice.body + side, 1024) && is_done;
     }
     if (is_done) return workspace;
@@ -106,6 +107,7 @@ void scree_overlap_workspace_destroy(scree_overlap_workspace *workspace)
         scree_overlap_body *body = slice->body + side;
         free(body->points);
         free(body->vertex_id);
+        free(body->along);
         free(body->outcode);
         free(body->inside);
         free(body->kept);

@@ -43,6 +43,7 @@ typedef struct scree_overlap_body
 {
     scree_vec3 *points;                ///< (max_vertices)
     int32_t *vertex_id;                ///< (max_vertices) in the shape
+    scree_real *along;                 ///< (max_vertices) along the direction that the other's half-space looks in
     int32_t *outcode;                  ///< (max_vertices) sides of the region on which the vertex is outside
     int32_t *inside;                   ///< (max_vertices) how often the vertex lies inside the other body: 0 or 1
     scree_kept_triangle *kept;         ///< (max_triangles)

@@ -23,6 +23,8 @@ enum
     SCREE_OUTSIDE_BELOW = 16,  ///< drops triangles of A only
     SCREE_OUTSIDE_ABOVE = 32,  ///< drops triangles of B only
     SCREE_OUTSIDE_BEYOND = 64, ///< of the half-space
+    SCREE_OUTSIDE_CODED = 128, ///< all sides are known; else only SCREE_OUTSIDE_BEYOND, which is set then
+    SCREE_OUTSIDE_ANY = 127,
     SCREE_OUTSIDE_A = SCREE_OUTSIDE_X | SCREE_OUTSIDE_Y | SCREE_OUTSIDE_BELOW | SCREE_OUTSIDE_BEYOND,
     SCREE_OUTSIDE_B = SCREE_OUTSIDE_X | SCREE_OUTSIDE_Y | SCREE_OUTSIDE_ABOVE | SCREE_OUTSIDE_BEYOND
 };
@@ -45,7 +47,7 @@ typedef struct scree_posed_shape
 } scree_posed_shape;
 
 /// Shapes up to this many triangles are filtered one triangle after the other, larger ones through their tree.
-#define SCREE_FILTER_TREE_FROM 48
+#define SCREE_FILTER_TREE_FROM 512
 
 SCREE_FN bool scree_filter_uses_tree(const scree_shape_view *shape)
 {
@@ -63,8 +65,9 @@ SCREE_FN int32_t scree_filter_outcode(const scree_filter_region *region, scree_v
     const scree_vec3 upper = region->box.upper;
     const scree_vec3 d = region->direction;
     const int32_t beyond = d.x * p.x + d.y * p.y + d.z * p.z > region->reach;
-    return (int32_t)(p.x < lower.x) | (int32_t)(p.x > upper.x) << 1 | (int32_t)(p.y < lower.y) << 2 |
-           (int32_t)(p.y > upper.y) << 3 | (int32_t)(p.z < lower.z) << 4 | (int32_t)(p.z > upper.z) << 5 | beyond << 6;
+    return SCREE_OUTSIDE_CODED | (int32_t)(p.x < lower.x) | (int32_t)(p.x > upper.x) << 1 |
+           (int32_t)(p.y < lower.y) << 2 | (int32_t)(p.y > upper.y) << 3 | (int32_t)(p.z < lower.z) << 4 |
+           (int32_t)(p.z > upper.z) << 5 | beyond << 6;
 }
 
 /// All vertices into the working frame, in the order of the shape. Returns the largest direction . v.
@@ -78,7 +81,9 @@ SCREE_FN scree_real scree_filter_load_all(scree_overlap_body *body, const scree_
         const scree_vec3 p = scree_posed_vertex(posed, v);
         body->points[v] = p;
         body->vertex_id[v] = v;
-        most = scree_max(most, scree_vec3_dot(direction, p));
+        const scree_real along = scree_vec3_dot(direction, p);
+        body->along[v] = along;
+        most = scree_max(most, along);
     }
     body->num_vertices = num;
     return most;
@@ -87,7 +92,7 @@ SCREE_FN scree_real scree_filter_load_all(scree_overlap_body *body, const scree_
 /// Sides on which all three corners are outside.
 SCREE_FN int32_t scree_filter_common_sides(const scree_overlap_body *body, const int32_t *v)
 {
-    return body->outcode[v[0]] & body->outcode[v[1]] & body->outcode[v[2]];
+    return body->outcode[v[0]] & body->outcode[v[1]] & body->outcode[v[2]] & SCREE_OUTSIDE_ANY;
 }
 
 /// Box of a triangle.

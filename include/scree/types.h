@@ -153,6 +153,7 @@ extern "C"
         bool measure;
         double from, to; ///< [m] range of x
         double base;     ///< [m] height of the plate
+        double top;      ///< [m] particles whose centre is higher do not count; default 1e6
         int64_t bins;    ///< default 20
     } scree_repose_def;
 

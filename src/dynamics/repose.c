@@ -19,6 +19,7 @@ static int64_t measure_heights(const scree_simulation *s, scree_repose *repose)
     }
     for (int64_t i = 0; i < s->particles.num_particles; ++i)
     {
+        if ((double)s->particles.position[i].z > def->top) continue;
         const scree_shape_view *shape = s->shape_views + s->particles.shape[i];
         const scree_mat3 rotation = scree_mat3_from_quat(s->particles.orientation[i]);
         for (int32_t v = 0; v < shape->num_vertices; ++v)

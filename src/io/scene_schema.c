@@ -500,9 +500,13 @@ static const scree_scene_key output_keys[] = {
 static const scree_scene_section output_section = {"output", "Intervals of simulated time; 0 switches a file off.",
                                                    output_fields, output_keys, COUNT(output_keys)};
 
-static const cyaml_schema_field_t repose_fields[] = {TRUTH(scree_repose_def, measure), NUMBER(scree_repose_def, from),
-                                                     NUMBER(scree_repose_def, to),     NUMBER(scree_repose_def, base),
-                                                     INTEGER(scree_repose_def, bins),  CYAML_FIELD_END};
+static const cyaml_schema_field_t repose_fields[] = {TRUTH(scree_repose_def, measure),
+                                                     NUMBER(scree_repose_def, from),
+                                                     NUMBER(scree_repose_def, to),
+                                                     NUMBER(scree_repose_def, base),
+                                                     NUMBER(scree_repose_def, top),
+                                                     INTEGER(scree_repose_def, bins),
+                                                     CYAML_FIELD_END};
 static const scree_scene_key repose_keys[] = {
     {.name = "measure", .default_text = "false", .meaning = "whether the angle is measured at the end of the run"},
     {.name = "from",
@@ -523,6 +527,12 @@ static const scree_scene_key repose_keys[] = {
      .min = -MAX_POSITION,
      .max = MAX_POSITION,
      .meaning = "height of the plate"},
+    {.name = "top",
+     .unit = "m",
+     .default_text = "1e6",
+     .min = -MAX_POSITION,
+     .max = MAX_POSITION,
+     .meaning = "particles whose centre is higher do not count: one may have got stuck above the pile"},
     {.name = "bins", .unit = "1", .default_text = "20", .min = 4, .max = 256, .meaning = "number of bins along x"},
 };
 static const scree_scene_section repose_section = {

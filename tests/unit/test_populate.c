@@ -133,7 +133,7 @@ static void test_repose_angle_of_a_known_profile(void)
     char text[8192];
     snprintf(text, sizeof text,
              HEAD
-             "repose: {measure: true, from: 0, to: 1, base: 0, bins: 10}\n"
+             "repose: {measure: true, from: 0, to: 1, base: 0, top: 2, bins: 10}\n"
              "particles:\n  - name: block\n    shape: cube\n    material: stone\n    size: {distribution: fixed, mean: "
              "0.0999}\n    bodies: [%s]\n",
              bodies);

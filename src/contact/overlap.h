@@ -24,8 +24,8 @@ typedef enum scree_overlap_scheme
 typedef struct scree_overlap_options
 {
     scree_overlap_scheme scheme;
-    bool separate_patches; ///< one result per connected piece instead of one for all
-    bool use_convex_path;  ///< take the convex path where both shapes are convex
+    bool separate_patches; ///< no effect yet: there is one result for all pieces
+    bool use_convex_path;  ///< no effect yet: convex shapes take the general path
 } scree_overlap_options;
 
 /// One contact between bodies A and B, in world axes.

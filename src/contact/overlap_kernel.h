@@ -9,8 +9,13 @@
 #include "contact/separation_kernel.h"
 #include "contact/triangle_filter_kernel.h"
 
-/// Certificates above this make the filtered scheme repeat with the hierarchy.
+/// Certificates above this make the filtered scheme repeat with the hierarchy. Good results in single precision have
+/// residuals up to 5e-6.
+#ifdef SCREE_SINGLE
+#define SCREE_RESIDUAL_LIMIT ((scree_real)1e-4)
+#else
 #define SCREE_RESIDUAL_LIMIT ((scree_real)1e-6)
+#endif
 
 /// Two bodies to be compared.
 typedef struct scree_overlap_pair

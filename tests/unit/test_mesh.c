@@ -314,9 +314,9 @@ static void mending_repairs_what_is_safe_and_says_so(void)
     SCREE_CHECK(memcmp(same.vertices, cube.vertices, 8 * sizeof *cube.vertices) == 0);
     SCREE_CHECK(memcmp(same.triangles, cube.triangles, 12 * sizeof *cube.triangles) == 0);
 
-    // the tolerance is a distance, not a box: corners 2.83 apart stay, though each coordinate differs by 2 at most
+    // the tolerance is a distance, not a box: corners 0.283 apart stay, though each coordinate differs by 0.2 at most
     scree_mesh tetrahedron;
-    SCREE_CHECK_INT(scree_generate_tetrahedron(&tetrahedron, sqrt(3.0)), SCREE_OK);
+    SCREE_CHECK_INT(scree_generate_tetrahedron(&tetrahedron, 0.1 * sqrt(3.0)), SCREE_OK);
     SCREE_CHECK_INT(scree_mesh_mend(&tetrahedron, 2.4 / sqrt(12.0), "tetrahedron", &report), SCREE_OK);
     SCREE_CHECK_INT(tetrahedron.num_vertices, 4);
     SCREE_CHECK_INT(report.num_messages, 0);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include <omp.h>
+
 namespace reference
 {
 namespace
@@ -103,6 +105,7 @@ Body::~Body() { scree_shape_destroy(&shape); }
 Engine::Engine() : workspace(scree_overlap_workspace_create())
 {
     if (workspace == nullptr) throw std::bad_alloc();
+    omp_set_num_threads(1); // trees of a few triangles: more threads only wait for each other
 }
 
 Engine::~Engine() { scree_overlap_workspace_destroy(workspace); }

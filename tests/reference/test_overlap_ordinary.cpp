@@ -17,10 +17,10 @@ int main(int argc, char **argv)
     demands.area = true;
     demands.indentation = true;
 #ifdef SCREE_SINGLE
-    // A vertex is rounded by 6e-8 of its coordinate, the depth is down to 1e-4: digits are few, but none is lost beyond
-    // that. The bounds are eps(float)/eps(double) times looser than those of double would be, cut off at "all wrong".
-    demands.area_bound = 0.5;
-    demands.centroid_bound = 0.1;
+    // the same bounds in units of float's eps, 5e8 times that of double, would be no bounds: these are what is left of
+    // the digits at a depth of 1e-4, where a vertex is rounded by 1e-3 of the depth
+    demands.area_bound = 1e-2;
+    demands.centroid_bound = 1e-2;
 #else
     demands.area_bound = 1e-9;
     demands.centroid_bound = 1e-9;
@@ -41,14 +41,16 @@ int main(int argc, char **argv)
     print_header();
     for (const auto &entry : by_shape) print_statistics(entry.first, entry.second);
     print_statistics("all", all);
-    std::printf("worst residual %.3g\n", all.worst_residual);
+    std::printf("worst residual %.3g, %d of %d results have a normal\n", all.worst_residual, all.num_touching,
+                4 * all.num_poses);
     SCREE_CHECK_INT(all.num_gross, 0);
 #ifndef SCREE_SINGLE
     SCREE_CHECK(quantile(all.relative, 0.5) <= 1e-12);
+    SCREE_CHECK_INT(all.num_touching, 4 * all.num_poses);
+    SCREE_CHECK_INT(all.num_fallbacks, 0);
 #else
-    SCREE_CHECK(quantile(all.relative, 0.5) <= 1e-12 * (FLT_EPSILON / DBL_EPSILON));
+    SCREE_CHECK(quantile(all.relative, 0.5) <= 1e-4);
+    SCREE_CHECK(all.num_touching >= 4 * all.num_poses / 2); // the volume of the others is noise in float
 #endif
-    // ordinary contacts have a normal and need no fallback
-    SCREE_CHECK(all.num_touching >= 4 * all.num_poses * 95 / 100);
     return SCREE_TEST_END();
 }

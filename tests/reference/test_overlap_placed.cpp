@@ -55,7 +55,7 @@ int main(int argc, char **argv)
         at[1].position = together.vertices[0] - b.vertices[0];
         local.kind = "placed";
         Demands demands;
-        demands.area = true;
+        demands.area = demands.indentation = true;
         demands.area_bound = 1e-8; // the patch is as small as 1e-4 of the size, its edges move by 1e-14
         demands.displacement = displacement(local.a, at[0], local.b, at[1]);
         Statistics statistics;

@@ -161,7 +161,6 @@ extern "C"
     {
         double skin;           ///< [1] share of the mean bounding radius added to the boxes; default 0.1
         char *overlap_scheme;  ///< "filtered" (default) or "hierarchy"
-        bool separate_patches; ///< default false: one contact per pair
     } scree_solver_def;
 
     typedef struct scree_scene

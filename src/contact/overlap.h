@@ -24,7 +24,7 @@ typedef enum scree_overlap_scheme
 typedef struct scree_overlap_options
 {
     scree_overlap_scheme scheme;
-    bool separate_patches; ///< no effect yet: there is one result for all pieces
+    bool separate_patches; ///< reserved: leave it false
     bool use_convex_path;  ///< no effect yet: convex shapes take the general path
 } scree_overlap_options;
 

@@ -45,8 +45,8 @@ void scree_simulation_print_plan(const scree_simulation *simulation, void *strea
              (double)s->buffers->skin);
     print_stage(out, "neighbours", text, bytes_search, "particle");
     print_stage(out, "", "candidate pairs with their overlaps and rows", bytes_pair, "pair");
-    snprintf(text, sizeof text, "polyhedra: exact overlap, %s scheme, %s", s->scene->solver.overlap_scheme,
-             s->scene->solver.separate_patches ? "a contact per patch" : "a contact per pair");
+    snprintf(text, sizeof text, "polyhedra: exact overlap, %s scheme, a contact per pair",
+             s->scene->solver.overlap_scheme);
     print_stage(out, "narrow phase", text, bytes_contact, "contact");
     snprintf(text, sizeof text, "volumetric Hertz-Mindlin%s%s", has_damping ? ", damping" : "",
              has_spring ? ", tangential spring with history" : ", no tangential spring");

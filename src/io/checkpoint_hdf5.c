@@ -77,7 +77,6 @@ static uint64_t scene_hash(const scree_simulation *simulation)
     hash = hash_number(hash, simulation->time_step);
     const char *scheme = scene->solver.overlap_scheme != NULL ? scene->solver.overlap_scheme : "";
     hash = scree_hash_bytes(hash, scheme, strlen(scheme) + 1);
-    hash = hash_number(hash, scene->solver.separate_patches);
     for (int32_t k = 0; k < simulation->num_materials * simulation->num_materials; ++k)
         hash = hash_law(hash, simulation->laws + k);
     for (int32_t k = 0; k < 2 * simulation->num_shapes; ++k) hash = hash_shape(hash, simulation->shape_views + k);
@@ -337,13 +336,25 @@ static bool check_scene(hid_t file, const scree_simulation *simulation, const ch
     return is_fit;
 }
 
+/// The number of contacts, -1 if the file is not sure of it: nothing is allocated for a number that stands alone.
+static int64_t count_contacts(hid_t file)
+{
+    int64_t num_contacts = -1;
+    const hid_t dataset = H5Dopen2(file, "/contacts/bodies", H5P_DEFAULT);
+    if (dataset < 0) return -1;
+    const hid_t space = H5Dget_space(dataset);
+    const int64_t num_ids = (int64_t)H5Sget_simple_extent_npoints(space);
+    H5Sclose(space);
+    H5Dclose(dataset);
+    if (!scree_hdf5_get_number(file, "num_contacts", SCREE_FIELD_INT64, &num_contacts)) return -1;
+    return num_contacts >= 0 && num_contacts <= MAX_CONTACTS && num_ids == 2 * num_contacts ? num_contacts : -1;
+}
+
 /// Room for what the file holds.
 static scree_status allocate_state(hid_t file, const scree_simulation *simulation, loaded_state *state)
 {
-    int64_t num_contacts = -1;
-    if (!scree_hdf5_get_number(file, "num_contacts", SCREE_FIELD_INT64, &num_contacts) || num_contacts < 0 ||
-        num_contacts > MAX_CONTACTS)
-        return SCREE_READ_FAILED;
+    const int64_t num_contacts = count_contacts(file);
+    if (num_contacts < 0) return SCREE_READ_FAILED;
     scree_status status = scree_particles_create(&state->particles, simulation->particles.num_particles);
     // room for one contact at least, so that there are arrays
     if (status == SCREE_OK)
@@ -442,6 +453,7 @@ static scree_status load(scree_simulation *simulation, hid_t file, const char *p
     memset(&state, 0, sizeof state);
     scree_status status = allocate_state(file, simulation, &state);
     if (status == SCREE_OK) status = read_state(file, &state, path, report);
+    else if (status == SCREE_READ_FAILED) scree_report_add(report, "%s is damaged: its counts disagree", path);
     else scree_report_add(report, "%s could not be read: %s", path, scree_status_text(status));
     if (status == SCREE_OK && !check_constants(simulation, &state, path, report)) status = SCREE_INVALID_INPUT;
     if (status == SCREE_OK && !check_values(simulation, &state, path, report)) status = SCREE_READ_FAILED;

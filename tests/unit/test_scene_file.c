@@ -55,7 +55,7 @@ static const char full_text[] =
     "     motion: {kind: translate, velocity: [1, 0, -1], start: 0.5, end: 1.5}}\n"
     "  - {name: drum, shape: twist, material: plate,\n"
     "     motion: {kind: rotate, axis: [0, 2, 0], centre: [1, 2, 3], angular_velocity: -8}}\n"
-    "solver: {skin: 0.3, overlap_scheme: hierarchy, separate_patches: true}\n"
+    "solver: {skin: 0.3, overlap_scheme: hierarchy}\n"
     "output: {series: 0.01, frames: 0.5, checkpoint: 0}\n"
     "repose: {measure: true, from: -0.5, to: 0.25, base: 0.125, bins: 33}\n";
 
@@ -155,7 +155,7 @@ static void check_full_bodies(const scree_scene *s)
     SCREE_CHECK(drum->motion.kind == SCREE_MOTION_ROTATE && equal3(drum->motion.axis, 0, 2, 0));
     SCREE_CHECK(equal3(drum->motion.centre, 1, 2, 3) && drum->motion.angular_velocity == -8);
     SCREE_CHECK(drum->motion.start == 0 && isinf(drum->motion.end));
-    SCREE_CHECK(s->solver.skin == 0.3 && s->solver.separate_patches);
+    SCREE_CHECK(s->solver.skin == 0.3);
     SCREE_CHECK(strcmp(s->solver.overlap_scheme, "hierarchy") == 0);
     SCREE_CHECK(s->output.series == 0.01 && s->output.frames == 0.5 && s->output.checkpoint == 0);
     SCREE_CHECK(s->repose.measure && s->repose.from == -0.5 && s->repose.to == 0.25);
@@ -242,7 +242,6 @@ static void test_overrides(void)
                                      "walls.floor.motion.kind=translate",
                                      "walls.floor.motion.velocity=[0, 0, 1]",
                                      "solver={skin: 0.5}",
-                                     "solver.separate_patches=true",
                                      "name=a = b",
                                      "time.end=4"};
     scree_scene_file file;
@@ -260,7 +259,7 @@ static void test_overrides(void)
         SCREE_CHECK(equal3(s->particles[0].bodies[0].position, 1, 9, 3));
         SCREE_CHECK(equal3(s->particles[0].bodies[0].velocity, 0, 0, -4));
         SCREE_CHECK(s->walls[0].motion.kind == SCREE_MOTION_TRANSLATE && s->walls[0].motion.velocity[2] == 1);
-        SCREE_CHECK(s->solver.skin == 0.5 && s->solver.separate_patches);
+        SCREE_CHECK(s->solver.skin == 0.5);
         SCREE_CHECK(strcmp(s->name, "a = b") == 0);
         SCREE_CHECK(strcmp(file.folder, ".") == 0);
     }

@@ -419,7 +419,8 @@ static void test_refusals(void)
     limit.rlim_cur = (rlim_t)2 << 30;
     SCREE_CHECK(setrlimit(RLIMIT_AS, &limit) == 0);
     SCREE_CHECK(scree_lbvh_build(&tree, boxes, (int64_t)1 << 30) == SCREE_OUT_OF_MEMORY);
-    SCREE_CHECK(scree_lbvh_build(&tree, boxes, 12000000) == SCREE_OUT_OF_MEMORY); // some of the arrays fit
+    const int64_t too_large = (int64_t)(limit.rlim_cur / (3 * sizeof(scree_lbvh_node)) + 1); // its nodes, with slack
+    SCREE_CHECK(scree_lbvh_build(&tree, boxes, too_large) == SCREE_OUT_OF_MEMORY);           // other arrays fit
     SCREE_CHECK(setrlimit(RLIMIT_AS, &kept) == 0);
     check_valid(&tree, boxes, 100);
     scree_lbvh_refit(&tree, boxes);

@@ -523,6 +523,7 @@ static void test_refusals(void)
 
 int main(void)
 {
+    omp_set_num_threads(1); // thousands of small searches; the last test asks for more
     SCREE_RUN(test_chain);
     SCREE_RUN(test_grids_and_sizes);
     SCREE_RUN(test_all_pairs);

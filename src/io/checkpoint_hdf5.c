@@ -358,8 +358,7 @@ static scree_status allocate_state(hid_t file, const scree_simulation *simulatio
     scree_status status = scree_particles_create(&state->particles, simulation->particles.num_particles);
     // room for one contact at least, so that there are arrays
     if (status == SCREE_OK)
-        status = scree_contact_list_reserve(&state->contacts, num_contacts > 0 ? num_contacts : 1,
-                                            simulation->contacts.max_pairs);
+        status = scree_contact_list_reserve(&state->contacts, num_contacts > 0 ? num_contacts : 1, 0);
     state->contacts.num_contacts = num_contacts;
     return status;
 }

@@ -55,7 +55,7 @@ double minus(double value, const Long &exact) { return (value - exact.high) - ex
 
 bool is_finite(const Result &r)
 {
-    double sum = r.volume + r.indentation + r.residual;
+    double sum = r.volume + r.indentation + r.radius + r.residual;
     for (size_t k = 0; k < 3; ++k) sum += r.area[k] + r.centroid[k] + r.normal[k];
     return std::isfinite(sum);
 }
@@ -121,6 +121,14 @@ void check_indentation(const Context &c, const Result &r, Faults &faults, Statis
     s.worst_indentation = std::max(s.worst_indentation, error / c.smaller);
     const double bound = std::max(c.demands.centroid_bound, 1e-9) * c.smaller + 2 * c.demands.displacement;
     faults.check(error <= bound, "|dd|", error, bound);
+    double radius = 0;
+    for (const Vector &p : c.exact.points)
+    {
+        const Vector from = c.exact.origin - r.centroid + p;
+        radius = std::max(radius, norm(cross(from, r.normal)));
+    }
+    const double radius_error = std::fabs(r.radius - radius);
+    faults.check(radius_error <= bound, "error of the radius", radius_error, bound);
 }
 
 void check_status(const Context &c, const Result &r, Faults &faults)

@@ -30,6 +30,7 @@ Result to_result(const scree_overlap_result &r, const scree_pose &pose_a)
     result.status = r.status;
     result.volume = double(r.volume);
     result.indentation = double(r.indentation);
+    result.radius = double(r.radius);
     result.residual = double(r.residual);
     result.area = to_double(r.area_vector);
     result.normal = to_double(r.normal);
@@ -135,16 +136,6 @@ Result Engine::compute(const Body &a, const Body &b, scree_overlap_scheme scheme
     const auto results = run(a, b, options, 1);
     if (results.size() != 1) throw std::runtime_error("one result was expected");
     return to_result(results[0], *a.pose());
-}
-
-std::vector<Result> Engine::patches(const Body &a, const Body &b, scree_overlap_scheme scheme)
-{
-    scree_overlap_options options{};
-    options.scheme = scheme;
-    options.separate_patches = true;
-    std::vector<Result> list;
-    for (const auto &r : run(a, b, options, 64)) list.push_back(to_result(r, *a.pose()));
-    return list;
 }
 
 double Engine::seconds(const Body &a, const Body &b, scree_overlap_scheme scheme)

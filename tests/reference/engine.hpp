@@ -54,7 +54,7 @@ class Body
 struct Result
 {
     scree_overlap_status status = SCREE_OVERLAP_NONE;
-    double volume = 0, indentation = 0, residual = 0;
+    double volume = 0, indentation = 0, radius = 0, residual = 0;
     Vector area{}, centroid{}, normal{}; ///< centroid absolute
     bool used_fallback = false;
 };
@@ -68,7 +68,6 @@ class Engine
     Engine &operator=(const Engine &) = delete;
 
     Result compute(const Body &a, const Body &b, scree_overlap_scheme scheme);
-    std::vector<Result> patches(const Body &a, const Body &b, scree_overlap_scheme scheme);
     /// Seconds of one call, the least of several runs of many.
     double seconds(const Body &a, const Body &b, scree_overlap_scheme scheme);
 

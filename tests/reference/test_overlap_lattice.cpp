@@ -9,7 +9,7 @@ int main(int argc, char **argv)
 {
     const Arguments arguments = read_arguments(argc, argv);
     if (!arguments.replay.empty()) return replay(arguments.replay);
-    const int num_poses = arguments.num_poses > 0 ? arguments.num_poses : 20000;
+    const int num_poses = arguments.num_poses > 0 ? arguments.num_poses : 50000;
     Random random(arguments.seed);
     Engine engine;
     std::map<std::string, Statistics> by_kind;

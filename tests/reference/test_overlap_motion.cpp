@@ -86,10 +86,43 @@ void test_rigid_motion()
     }
 }
 
+/// A comb and its teeth and back as separate bodies: the overlaps of the pieces with another body add up to that of the
+/// whole, which touches it in several places.
+void test_cut_in_pieces()
+{
+    Random random(14);
+    Engine engine;
+    for (int i = 0; i < 100; ++i)
+    {
+        const int num_teeth = random.integer(2, 6), columns = 2 * num_teeth - 1;
+        const Mesh other = moved(shape(random.integer(0, 9), random), random_rotation(random),
+                                 {random.uniform(0, 1), random.uniform(0.2, 1.2), random.uniform(0, 0.5)});
+        const Body whole(comb(num_teeth, 0.5)), b(other);
+        std::vector<Mesh> pieces = {box({0, 0, 0}, {1, 0.3, 0.5})};
+        for (int k = 0; k < columns; k += 2)
+            pieces.push_back(box({double(k) / columns, 0.3, 0}, {double(k + 1) / columns, 1, 0.5}));
+        double volume = 0;
+        Vector moment = {0, 0, 0};
+        for (const Mesh &mesh : pieces)
+        {
+            const Result r = engine.compute(Body(mesh), b, SCREE_OVERLAP_FILTERED);
+            volume += r.volume;
+            moment = moment + r.volume * r.centroid;
+        }
+        const Result r = engine.compute(whole, b, SCREE_OVERLAP_FILTERED);
+        const double bound = double(pieces.size() + 1) * volume_bound * epsilon * std::max(1.0, extent(other));
+        SCREE_CHECK_CLOSE(volume, r.volume, bound);
+        if (r.status != SCREE_OVERLAP_NONE) SCREE_CHECK_CLOSE(norm(moment - r.volume * r.centroid), 0, 2 * bound);
+    }
+}
+
+} // namespace
+
 int main(void)
 {
     SCREE_RUN(test_shuffled);
     SCREE_RUN(test_lattice_motion);
     SCREE_RUN(test_rigid_motion);
+    SCREE_RUN(test_cut_in_pieces);
     return SCREE_TEST_END();
 }

@@ -47,7 +47,7 @@ def test_numbers_of_the_plan():
     )
     assert step == 1e-4
     assert share == pytest.approx(step / critical, rel=1e-2)  # printed with three digits
-    assert suggested == pytest.approx(0.15 * critical, rel=1e-3)
+    assert suggested == pytest.approx(0.5 * critical, rel=1e-3)
 
 
 def test_set_changes_the_scene():

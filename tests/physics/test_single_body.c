@@ -70,9 +70,7 @@ static void test_block_sticks_below_the_angle_of_friction(void)
     SCREE_CHECK(fabs(late - early) < 1e-8);
 }
 
-/// Mean acceleration of a sliding block, after it has settled, against g (sin - mu cos). A block that slides on its
-/// face chatters: its normal force swings by a fifth around the weight at some 200 rad/s. The swing of the speed,
-/// mu/5 g/200 = 4 mm/s, is what a mean over 0.5 s may be off by at either end.
+/// Mean acceleration of a block that slides on its face against g (sin - mu cos): exact once it has settled.
 static void check_acceleration(double tangent, double friction)
 {
     const double angle = atan(tangent), expected = 9.81 * (sin(angle) - friction * cos(angle));
@@ -81,7 +79,7 @@ static void check_acceleration(double tangent, double friction)
     slide(tangent, friction, 0.7, &late, &distance);
     printf("tan %.2f, mu %.2f: acceleration %.6f, expected %.6f m/s^2\n", tangent, friction, (late - early) / 0.5,
            expected);
-    SCREE_CHECK_CLOSE((late - early) / 0.5, expected, 2 * 0.004 / 0.5);
+    SCREE_CHECK_CLOSE((late - early) / 0.5, expected, 1e-6 * 9.81);
 }
 
 static void test_block_slips_above_the_angle_of_friction(void)
@@ -129,7 +127,8 @@ static void test_cube_dropped_flat_comes_to_rest(void) { drop("flat", 0.06, "[1,
 static void test_cube_dropped_on_an_edge_comes_to_rest(void) { drop("edge", 0.09, "[0.93, 0.36755, 0, 0]"); }
 static void test_cube_dropped_on_a_corner_comes_to_rest(void) { drop("corner", 0.1, "[0.9, 0.3, 0.28, 0.1]"); }
 
-/// Ten cubes on a plate, each `shift` times (2 (k mod 3), k mod 2) beside the axis; kinetic energy after 1 s and 2 s.
+/// Ten cubes on a plate, each `shift` times (2 (k mod 3), k mod 2) beside the axis; largest kinetic energy from 0.5 to
+/// 1 s and from 1.5 to 2 s.
 static void build_tower(scene_run *run, double shift, double kinetic[2])
 {
     char bodies[2048] = "";
@@ -153,11 +152,13 @@ static void build_tower(scene_run *run, double shift, double kinetic[2])
              "walls:\n  - {name: floor, shape: plate, material: stone, position: [0, 0, -0.1]}\n",
              bodies);
     scene_run_start(run, text);
-    for (int k = 0; k < 2 && run->simulation != NULL; ++k)
+    kinetic[0] = kinetic[1] = 0;
+    for (int k = 10; k <= 40 && run->simulation != NULL; ++k)
     {
-        scene_run_until(run, 1.0 + k);
+        scene_run_until(run, 0.05 * k);
         const scree_energies e = scree_simulation_energies(run->simulation);
-        kinetic[k] = e.kinetic + e.rotational;
+        if (k <= 20) kinetic[0] = fmax(kinetic[0], e.kinetic + e.rotational);
+        if (k >= 30) kinetic[1] = fmax(kinetic[1], e.kinetic + e.rotational);
     }
 }
 
@@ -167,7 +168,7 @@ static void test_straight_tower_of_ten_cubes_comes_to_rest(void)
     double kinetic[2], sag = 0;
     build_tower(&run, 0, kinetic);
     if (run.simulation == NULL) return;
-    printf("straight tower: kinetic %.3g J after 1 s, %.3g J after 2 s\n", kinetic[0], kinetic[1]);
+    printf("straight tower: kinetic %.3g J up to 1 s, %.3g J up to 2 s\n", kinetic[0], kinetic[1]);
     SCREE_CHECK(kinetic[1] < 1e-8);
     for (int k = 0; k < 10; ++k)
     {
@@ -190,8 +191,8 @@ static void test_staggered_tower_of_ten_cubes_stands(void)
     double kinetic[2];
     build_tower(&run, 0.001, kinetic);
     if (run.simulation == NULL) return;
-    printf("staggered tower: kinetic %.3g J after 1 s, %.3g J after 2 s\n", kinetic[0], kinetic[1]);
-    SCREE_CHECK(kinetic[1] < 1.5 * kinetic[0]);
+    printf("staggered tower: kinetic %.3g J up to 1 s, %.3g J up to 2 s\n", kinetic[0], kinetic[1]);
+    SCREE_CHECK(kinetic[1] < kinetic[0]);
     SCREE_CHECK(kinetic[1] < 0.5 * 25 * 2e-3 * 2e-3);
     for (int k = 0; k < 10; ++k)
     {

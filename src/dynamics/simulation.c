@@ -43,12 +43,25 @@ static int64_t find_unstable(const scree_particles *particles)
     return first == INT64_MAX ? -1 : first;
 }
 
+/// In checked builds the contacts of every step are walked over; elsewhere nothing.
+static scree_status check_contacts(const scree_simulation *s, scree_report *report)
+{
+#ifdef SCREE_CHECKED
+    return scree_contact_list_validate(&s->contacts, report) ? SCREE_OK : SCREE_UNSTABLE;
+#else
+    (void)s;
+    (void)report;
+    return SCREE_OK;
+#endif
+}
+
 scree_status scree_simulation_step(scree_simulation *simulation, scree_report *report)
 {
     ++simulation->step;
     predict(simulation);
     scree_status status = scree_update_neighbours(simulation);
     if (status == SCREE_OK) status = scree_update_contacts(simulation);
+    if (status == SCREE_OK) status = check_contacts(simulation, report);
     if (status == SCREE_OK) status = scree_update_forces(simulation);
     if (status == SCREE_OK)
     {

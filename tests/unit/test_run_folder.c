@@ -478,6 +478,7 @@ static int64_t killed_run(const char *folder, bool from_start, long microseconds
 {
     unlink(in_folder(folder, "frames.vtkhdf"));
     const pid_t child = fork();
+    if (child < 0) exit(EXIT_FAILURE); // kill(-1) would end everything
     if (child == 0) write_until_killed(folder);
     for (int k = 0; k < 20000 && !from_start && access(in_folder(folder, "frames.vtkhdf"), F_OK) != 0; ++k)
         sleep_microseconds(200);

@@ -307,6 +307,12 @@ bool check_placed_pose(const Pose &local, const Placement &at_a, const Placement
     return check_bodies(world, a, b, demands, engine, statistics);
 }
 
+bool is_representable(const Pose &pose)
+{
+    const double size = std::min(extent(pose.a), extent(pose.b));
+    return norm(pose.a.vertices[0]) * epsilon <= 1e-3 * size;
+}
+
 void print_header()
 {
     std::printf("%-32s %6s %6s %9s %9s %9s %9s %9s %9s %9s %6s\n", "", "poses", "failed", "|dV|/unit", "-V/unit",

@@ -52,6 +52,9 @@ bool check_pose(const Pose &pose, const Demands &demands, Engine &engine, Statis
 bool check_placed_pose(const Pose &local, const Placement &at_a, const Placement &at_b, Demands demands, Engine &engine,
                        Statistics &statistics);
 
+/// Far from the origin in float, a body may be smaller than the spacing of its coordinates: it is no body any more.
+bool is_representable(const Pose &pose);
+
 void print_header();
 void print_statistics(const std::string &name, const Statistics &statistics);
 

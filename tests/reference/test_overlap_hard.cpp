@@ -2,21 +2,7 @@
 #include "check.hpp"
 #include "harness.h"
 
-#include <cmath>
-
 using namespace reference;
-
-namespace
-{
-
-/// Far from the origin in float, a body may be smaller than the spacing of its coordinates: it is no body any more.
-bool is_representable(const Pose &pose)
-{
-    const double size = std::min(extent(pose.a), extent(pose.b));
-    return norm(pose.a.vertices[0]) * epsilon <= 1e-3 * size;
-}
-
-} // namespace
 
 int main(int argc, char **argv)
 {

@@ -1,0 +1,228 @@
+"""Errors and times of the overlap against exact arithmetic and CGAL: makes README.md and its plots.
+
+Usage: python run.py [--quick] [--keep]
+  --quick  a twentieth of the poses, to try the script
+  --keep   plots and page again from results.jsonl, without computing anything
+"""
+
+import json
+import os
+import platform
+import statistics
+import subprocess
+import sys
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+
+FOLDER = Path(__file__).resolve().parent
+ROOT = FOLDER.parent.parent
+BUILD = ROOT / "build" / "release"
+RESULTS = FOLDER / "results.jsonl"
+CERTIFICATE = FOLDER / "certificate.txt"
+
+ROUTES = [  # key of the lines, precision, text, colour, marker
+    ("filtered", "double", "scree, filtered signs (default)", "C0", "o"),
+    ("hierarchy", "double", "scree, hierarchy", "C1", "s"),
+    ("filtered", "single", "scree, filtered signs, single precision", "C2", "^"),
+    ("hierarchy", "single", "scree, hierarchy, single precision", "C4", "v"),
+    ("cgal_inexact", "double", "CGAL corefinement, inexact constructions", "C7", "D"),
+    ("cgal_exact", "double", "CGAL corefinement, exact constructions", "C3", "x"),
+]
+
+
+def run(command, **options):
+    print("+", " ".join(str(part) for part in command), flush=True)
+    return subprocess.run([str(part) for part in command], check=True, **options)
+
+
+def compute(is_quick):
+    targets = ["overlap_study", "overlap_study_single", "test_overlap_certificate"]
+    run(["cmake", "--preset", "release", "--log-level=WARNING"], cwd=ROOT)
+    run(["cmake", "--build", BUILD, "--target", *targets], cwd=ROOT)
+    counts = ["4", "6", "1000"] if is_quick else ["60", "60", "50000"]
+    environment = dict(os.environ, OMP_NUM_THREADS="1")
+    with open(RESULTS, "w") as file:
+        for program in targets[:2]:
+            path = BUILD / "tests" / "reference" / program
+            output = run([path, *counts], capture_output=True, text=True, env=environment).stdout
+            file.writelines(line + "\n" for line in output.splitlines() if line.startswith("{\"part\""))
+    path = BUILD / "tests" / "test_overlap_certificate"
+    CERTIFICATE.write_text(run([path], capture_output=True, text=True, env=environment).stdout)
+
+
+def quantile(values, q):
+    values = sorted(values)
+    return values[min(len(values) - 1, int(q * len(values)))]
+
+
+def error_of(line, route, measure="volume"):
+    """Relative error of one line; below one rounding it is drawn as one rounding."""
+    value = line.get(f"{route}_{measure}")
+    return None if value is None else max(value, 1e-17)
+
+
+def select(lines, precision, **wanted):
+    chosen = [x for x in lines if x["part"] == "size" and x["precision"] == precision]
+    return [x for x in chosen if all(x[key] == value for key, value in wanted.items())]
+
+
+def groups(lines, precision):
+    """Lines of one precision by (shape, triangles), smallest first."""
+    result = {}
+    for line in select(lines, precision):
+        result.setdefault((line["triangles"], line["shape"]), []).append(line)
+    return dict(sorted(result.items()))
+
+
+def times_and_errors(lines, route, precision):
+    for key, members in groups(lines, precision).items():
+        pairs = [(x[f"{route}_s"], error_of(x, route)) for x in members if f"{route}_s" in x]
+        if pairs:
+            yield key, [p[0] for p in pairs], [p[1] for p in pairs]
+
+
+def plot_error_over_time(lines):
+    figure, axes = plt.subplots(figsize=(8, 5.2), layout="constrained")
+    for route, precision, text, colour, marker in ROUTES:
+        for i, ((triangles, _), seconds, errors) in enumerate(times_and_errors(lines, route, precision)):
+            x = 1e6 * statistics.median(seconds)
+            middle = quantile(errors, 0.5)
+            axes.plot([x, x], [middle, max(errors)], "-", color=colour, lw=0.8, alpha=0.6)
+            axes.plot(x, middle, marker, color=colour, ms=3 + 0.15 * triangles**0.5, label=text if i == 0 else None)
+    axes.set(xscale="log", yscale="log", xlabel="time per pair [µs], median", ylabel="relative error of the volume")
+    axes.set_title("Median (marks) to worst (lines) error; larger marks: more triangles")
+    axes.grid(alpha=0.3)
+    axes.legend(fontsize=8)
+    figure.savefig(FOLDER / "error_over_time.png", dpi=130)
+    plt.close(figure)
+
+
+def plot_growth(lines):
+    figure, axes = plt.subplots(figsize=(8, 4.8), layout="constrained")
+    for route, precision, text, colour, marker in ROUTES:
+        for shape, style in (("sphere", "-"), ("rock", "--")):
+            points = [
+                (key[0], 1e6 * statistics.median(seconds))
+                for key, seconds, _ in times_and_errors(lines, route, precision)
+                if key[1] == shape
+            ]
+            if points:
+                label = text if shape == "sphere" else None
+                axes.plot(*zip(*points), style, marker=marker, color=colour, ms=4, label=label)
+    axes.set(xscale="log", yscale="log", xlabel="triangles per body", ylabel="time per pair [µs], median")
+    axes.set_title("Two spheres (solid) and two rocks (dashed), depth 1e-4 to 5e-2 of the size")
+    axes.grid(alpha=0.3, which="both")
+    axes.legend(fontsize=8)
+    figure.savefig(FOLDER / "growth.png", dpi=130)
+    plt.close(figure)
+
+
+def plot_depth(lines):
+    figure, axes = plt.subplots(1, 3, figsize=(11, 4), layout="constrained", sharex=True)
+    for ax, measure in zip(axes, ("volume", "area", "centroid")):
+        for precision, colour in (("double", "C0"), ("single", "C2")):
+            chosen = select(lines, precision)
+            points = [(x["depth"], error_of(x, "filtered", measure)) for x in chosen if f"filtered_{measure}" in x]
+            ax.plot(*zip(*points), ".", color=colour, ms=3, label=precision)
+        ax.set(xscale="log", yscale="log", xlabel="depth / size", title=f"{measure}")
+        ax.grid(alpha=0.3)
+    axes[0].set_ylabel("error: of V by V, of S by |S|, of c by the size")
+    axes[0].legend()
+    figure.savefig(FOLDER / "error_over_depth.png", dpi=130)
+    plt.close(figure)
+
+
+def number(value, digits=2):
+    return f"{value:.{digits}g}"
+
+
+def table(header, rows):
+    lines = ["| " + " | ".join(header) + " |", "|" + "---|" * len(header)]
+    return "\n".join(lines + ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows])
+
+
+def time_table(lines):
+    rows = []
+    single = groups(lines, "single")
+    for key, members in groups(lines, "double").items():
+        def ratio(route):
+            values = [x[f"{route}_s"] / x["filtered_s"] for x in members if f"{route}_s" in x]
+            return f"{statistics.median(values):.3g}" if values else "-"
+
+        def micro(chosen, route):
+            return f"{1e6 * statistics.median(x[f'{route}_s'] for x in chosen):.3g}" if chosen else "-"
+
+        refused = sum("cgal_exact_s" not in x for x in members)
+        rows.append([key[1], key[0], len(members), micro(members, "filtered"), ratio("hierarchy"),
+                     micro(single.get(key), "filtered"), ratio("cgal_inexact"), ratio("cgal_exact"), refused])
+    header = ["bodies", "triangles each", "poses", "default [µs]", "hierarchy / default", "single [µs]",
+              "CGAL inexact / default", "CGAL exact / default", "refused by CGAL"]
+    return table(header, rows)
+
+
+def error_table(lines):
+    rows = []
+    for route, precision, text, _, _ in ROUTES:
+        chosen = [x for x in select(lines, precision) if f"{route}_volume" in x]
+        if not chosen:
+            continue
+        row = [text, len(chosen)]
+        for measure in ("volume", "area", "centroid"):
+            values = [x[f"{route}_{measure}"] for x in chosen if f"{route}_{measure}" in x]
+            row += [number(quantile(values, 0.5)), number(quantile(values, 0.99)), number(max(values))] if values else ["-"] * 3
+        rows.append(row)
+    header = ["", "poses", "V median", "V 99 %", "V worst", "S median", "S 99 %", "S worst", "c median", "c 99 %", "c worst"]
+    return table(header, rows)
+
+
+def kind_table(lines, part):
+    rows = []
+    for line in (x for x in lines if x["part"] == part and x["precision"] == "double"):
+        twin = [x for x in lines if x["part"] == part and x["precision"] == "single" and x["name"] == line["name"]]
+        single = f"{twin[0]['units']:.2g}" if twin and twin[0]["poses"] else "-"
+        rows.append([line["name"], line["poses"], f"{line['units']:.2g}", f"{line['negative']:.2g}", line["gross"],
+                     line["fallbacks"], single])
+    header = ["kind", "poses", "worst \\|dV\\|", "most negative V", "gross", "fallbacks", "worst \\|dV\\| in single"]
+    return table(header, rows)
+
+
+def write_page(lines):
+    template = (FOLDER / "page.md").read_text()
+    certificate = CERTIFICATE.read_text().split("\n")
+    cells = {
+        "machine": f"{processor()}, {platform.system()}, one thread",
+        "times": time_table(lines),
+        "errors": error_table(lines),
+        "kinds": kind_table(lines, "kind"),
+        "lattice": kind_table(lines, "lattice"),
+        "certificate": "\n".join(line for line in certificate if line and "checks," not in line),
+    }
+    for name, text in cells.items():
+        template = template.replace("{{" + name + "}}", text)
+    (FOLDER / "README.md").write_text(template)
+
+
+def processor():
+    for line in Path("/proc/cpuinfo").read_text().splitlines():
+        if line.startswith("model name"):
+            return line.split(":", 1)[1].strip()
+    return platform.machine()
+
+
+def main():
+    if "--keep" not in sys.argv:
+        compute("--quick" in sys.argv)
+    lines = [json.loads(line) for line in RESULTS.read_text().splitlines()]
+    plot_error_over_time(lines)
+    plot_growth(lines)
+    plot_depth(lines)
+    write_page(lines)
+    print(f"wrote {FOLDER / 'README.md'}")
+
+
+if __name__ == "__main__":
+    main()

@@ -7,7 +7,7 @@ set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 if(NOT CMAKE_BUILD_TYPE)
     set(CMAKE_BUILD_TYPE Release CACHE STRING "Release, Debug, Checked or Thread" FORCE)
 endif()
-# Asserts are SCREE_CHECKED's affair, so NDEBUG follows it.
+# Asserts are SCREE_CHECKED's affair, so NDEBUG follows it. -O3 was measured: 1 to 5 % on overlaps, nothing on a run.
 set(CMAKE_C_FLAGS_RELEASE "-O2 -DNDEBUG")
 set(CMAKE_C_FLAGS_DEBUG "-O0 -g -DSCREE_CHECKED=1")
 set(CMAKE_C_FLAGS_CHECKED

@@ -101,3 +101,10 @@ endfunction()
 foreach(kind cli python checks)
     scree_add_scripts(${kind})
 endforeach()
+
+# the longest first, so that no core waits for them at the end
+foreach(name checks_test_cuda checks_test_machine_code checks_test_headers)
+    if(TEST ${name})
+        set_tests_properties(${name} PROPERTIES COST 1000)
+    endif()
+endforeach()

@@ -48,8 +48,16 @@ extern "C"
         SCREE_SHAPE_TETRAHEDRON,
         SCREE_SHAPE_SCHOENHARDT,
         SCREE_SHAPE_SPHERE,
-        SCREE_SHAPE_ROCK
+        SCREE_SHAPE_ROCK,
+        SCREE_SHAPE_TURNED
     } scree_shape_source;
+
+    /// Corner of a profile that is turned about z.
+    typedef struct scree_profile_point
+    {
+        double radius; ///< [m] distance from the axis
+        double height; ///< [m] along it
+    } scree_profile_point;
 
     typedef struct scree_shape_def
     {
@@ -59,6 +67,11 @@ extern "C"
         double size[3];    ///< [m] edge lengths of a box; first one: diameter of the enclosing sphere of the others
         int64_t triangles; ///< wanted number of triangles (sphere, rock); of a file: simplified to it; 0: as it is
         int64_t seed;      ///< of a rock
+        scree_profile_point *profile; ///< of turned: closed polygon
+        uint32_t num_profile;
+        int64_t segments; ///< of turned: sides of the cross-sections
+        double offset[3]; ///< [m] added to every vertex
+        int64_t copies;   ///< of the shifted mesh, turned evenly about z: one body of several pieces
     } scree_shape_def;
 
     typedef enum scree_size_distribution
@@ -86,6 +99,21 @@ extern "C"
         double angular_velocity[3]; ///< [rad/s], world axes
     } scree_body_def;
 
+    typedef enum scree_axis
+    {
+        SCREE_AXIS_NONE,
+        SCREE_AXIS_X,
+        SCREE_AXIS_Y,
+        SCREE_AXIS_Z
+    } scree_axis;
+
+    /// A box, or the cylinder in it.
+    typedef struct scree_region_def
+    {
+        double min[3], max[3]; ///< [m]
+        scree_axis cylinder;   ///< only the cylinder along this axis, through the middle, as wide as the box is narrow
+    } scree_region_def;
+
     /// Particles of one shape and material: either listed one by one in `bodies`, or filled into a region.
     typedef struct scree_particle_group_def
     {
@@ -93,12 +121,12 @@ extern "C"
         char *shape;
         char *material;
         scree_size_def size;
-        int64_t count;       ///< number to fill in; 0: by mass
-        double mass;         ///< [kg] total to fill in; 0: by count
-        double region[2][3]; ///< [m] lower and upper corner of the box to fill, from the bottom up
-        double spacing;      ///< [1] distance of the lattice over the largest bounding diameter, default 1.05
-        int64_t seed;        ///< of sizes, orientations and jitter
-        double velocity[3];  ///< [m/s] initial
+        int64_t count;           ///< number to fill in; 0: by mass
+        double mass;             ///< [kg] total to fill in; 0: by count
+        scree_region_def region; ///< to fill, from the bottom up
+        double spacing;          ///< [1] distance of the lattice over the largest bounding diameter, default 1.05
+        int64_t seed;            ///< of sizes, orientations and jitter
+        double velocity[3];      ///< [m/s] initial
         scree_body_def *bodies;
         uint32_t num_bodies;
     } scree_particle_group_def;

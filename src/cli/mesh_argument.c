@@ -29,6 +29,20 @@ static int split_numbers(const char *text, double *values, int max_values)
 
 static bool is_count(double x) { return x >= 0.0 && x <= 2147483647.0 && (double)(int64_t)x == x; }
 
+enum
+{
+    MAX_VALUES = 2 * SCREE_PROFILE_MAX_POINTS + 1
+};
+
+/// "turned:N:R:Z:R:Z...": segments, then the corners of the profile.
+static scree_status call_turned(scree_mesh *mesh, const double *v, int num)
+{
+    scree_profile_point profile[SCREE_PROFILE_MAX_POINTS];
+    const int num_points = (num - 1) / 2;
+    for (int k = 0; k < num_points; ++k) profile[k] = (scree_profile_point){v[1 + 2 * k], v[2 + 2 * k]};
+    return scree_generate_turned(mesh, profile, num_points, (int32_t)v[0]);
+}
+
 static scree_status call_generator(scree_mesh *mesh, const char *kind, const double *v, int num)
 {
     if (strcmp(kind, "box") == 0 && num == 3) return scree_generate_box(mesh, v);
@@ -39,33 +53,36 @@ static scree_status call_generator(scree_mesh *mesh, const char *kind, const dou
     if (strcmp(kind, "rock") == 0 && (num == 2 || num == 3) && is_count(v[0]) && is_count(v[1]) &&
         (num == 2 || is_count(v[2])))
         return scree_generate_rock(mesh, (uint64_t)v[0], (int32_t)v[1], num == 3 ? (int32_t)v[2] : 0);
+    if (strcmp(kind, "turned") == 0 && num % 2 == 1 && is_count(v[0])) return call_turned(mesh, v, num);
     return SCREE_INVALID_INPUT;
 }
 
 scree_status scree_mesh_generate(scree_mesh *mesh, const char *specification, scree_report *report)
 {
     char kind[16];
-    double values[4];
+    double values[MAX_VALUES];
     const size_t length = strcspn(specification, ":");
     scree_status status = SCREE_INVALID_INPUT;
     if (length < sizeof kind)
     {
         memcpy(kind, specification, length);
         kind[length] = '\0';
-        const int num = split_numbers(specification + length, values, 4);
+        const int num = split_numbers(specification + length, values, MAX_VALUES);
         status = call_generator(mesh, kind, values, num);
     }
     if (status == SCREE_INVALID_INPUT)
-        scree_report_add(report,
-                         "%s: not a shape that can be made: box:X:Y:Z, tetrahedron:R, schoenhardt:R, sphere:R:N, "
-                         "rock:SEED:N or rock:SEED:N:D, with lengths > 0 and 4 or more triangles",
-                         specification);
+        scree_report_add(
+            report,
+            "%s: not a shape that can be made: box:X:Y:Z, tetrahedron:R, schoenhardt:R, sphere:R:N, "
+            "rock:SEED:N, rock:SEED:N:D or turned:N:R:Z:R:Z:R:Z, with lengths > 0, 4 or more triangles, 3 or "
+            "more segments and corners of a profile",
+            specification);
     return status;
 }
 
 bool scree_mesh_is_generated(const char *argument)
 {
-    static const char *const kinds[] = {"box:", "tetrahedron:", "schoenhardt:", "sphere:", "rock:"};
+    static const char *const kinds[] = {"box:", "tetrahedron:", "schoenhardt:", "sphere:", "rock:", "turned:"};
     for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; ++k)
         if (strncmp(argument, kinds[k], strlen(kinds[k])) == 0) return true;
     return false;

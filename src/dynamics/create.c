@@ -51,8 +51,9 @@ static scree_status check_names(const scree_scene *scene, scree_report *report)
     return is_complete && scree_report_num_faults(report) == before ? SCREE_OK : SCREE_INVALID_INPUT;
 }
 
-/// Mesh of a shape definition, in its source frame.
-static scree_status make_mesh(scree_mesh *mesh, const scree_shape_def *def, const char *folder, scree_report *report)
+/// Mesh of a shape definition, in its source frame, before it is shifted and repeated.
+static scree_status make_one_mesh(scree_mesh *mesh, const scree_shape_def *def, const char *folder,
+                                  scree_report *report)
 {
     const double diameter = def->size[0];
     scree_status status = SCREE_INVALID_INPUT;
@@ -71,6 +72,8 @@ static scree_status make_mesh(scree_mesh *mesh, const scree_shape_def *def, cons
         for (int32_t v = 0; v < mesh->num_vertices; ++v)
             mesh->vertices[v] = scree_vec3_scale(mesh->vertices[v], (scree_real)diameter);
         return status;
+    case SCREE_SHAPE_TURNED:
+        return scree_generate_turned(mesh, def->profile, (int32_t)def->num_profile, (int32_t)def->segments);
     case SCREE_SHAPE_FILE:
         break;
     }
@@ -87,6 +90,22 @@ static scree_status make_mesh(scree_mesh *mesh, const scree_shape_def *def, cons
     status = scree_mesh_import(mesh, path, report);
     if (status == SCREE_OK && def->triangles > 0 && def->triangles < mesh->num_triangles)
         status = scree_mesh_simplify(mesh, (int32_t)def->triangles, 0, report);
+    return status;
+}
+
+/// Mesh of a shape definition. What a scene can put together wrongly is checked.
+static scree_status make_mesh(scree_mesh *mesh, const scree_shape_def *def, const char *folder, scree_report *report)
+{
+    scree_status status = make_one_mesh(mesh, def, folder, report);
+    const bool is_shifted = def->offset[0] != 0 || def->offset[1] != 0 || def->offset[2] != 0;
+    const bool is_repeated = def->copies > 1;
+    if (status == SCREE_OK && (is_shifted || is_repeated))
+        status = scree_mesh_repeat(mesh, def->offset, (int32_t)def->copies);
+    if (status != SCREE_OK || (def->source != SCREE_SHAPE_TURNED && !is_repeated)) return status;
+    status = scree_mesh_validate(mesh, def->name, report);
+    if (status == SCREE_BAD_MESH)
+        scree_report_add(report, "shape \"%s\": %s must not touch or cross each other; see scree --help scene",
+                         def->name, is_repeated ? "its copies" : "the sides of its profile");
     return status;
 }
 

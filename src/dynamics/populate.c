@@ -115,13 +115,52 @@ static scree_status draw_group(const scree_simulation *s, const scree_particle_g
     }
 }
 
-/// Lattice of the group's region: cells of the largest bounding diameter times the spacing.
+/// Lattice of the group's region: cells of the largest bounding diameter times the spacing, numbered from the bottom
+/// up.
 typedef struct fill_lattice
 {
     double lower[3], cell;
     int64_t num[3];
     double slack; ///< half the room around the largest particle in its cell
+    scree_axis cylinder;
+    double middle[3];        ///< [m] of the region
+    double largest_distance; ///< [m] from the cylinder's axis, of the middle of a cell that can be used
 } fill_lattice;
+
+static void cell_middle(const fill_lattice *lattice, int64_t k, double middle[3])
+{
+    const int64_t cell[3] = {k % lattice->num[0], k / lattice->num[0] % lattice->num[1],
+                             k / lattice->num[0] / lattice->num[1]};
+    for (int d = 0; d < 3; ++d) middle[d] = lattice->lower[d] + ((double)cell[d] + 0.5) * lattice->cell;
+}
+
+/// Is direction k across the axis of the cylinder?
+static bool is_across(const fill_lattice *lattice, int k)
+{
+    return lattice->cylinder != SCREE_AXIS_NONE && k != (int)lattice->cylinder - SCREE_AXIS_X;
+}
+
+/// Does the particle stay inside the region wherever it is put in cell k?
+static bool is_usable_cell(const fill_lattice *lattice, int64_t k)
+{
+    if (lattice->cylinder == SCREE_AXIS_NONE) return true;
+    double middle[3], squared = 0;
+    cell_middle(lattice, k, middle);
+    for (int d = 0; d < 3; ++d)
+        if (is_across(lattice, d)) squared += (middle[d] - lattice->middle[d]) * (middle[d] - lattice->middle[d]);
+    return squared <= lattice->largest_distance * lattice->largest_distance;
+}
+
+/// Number of cells that can be used, counted no further than `enough`.
+static int64_t count_cells(const fill_lattice *lattice, int64_t enough)
+{
+    const double all = (double)lattice->num[0] * (double)lattice->num[1] * (double)lattice->num[2];
+    if (lattice->cylinder == SCREE_AXIS_NONE) return all > (double)enough ? enough : (int64_t)all;
+    int64_t num = 0;
+    if (lattice->largest_distance < 0) return 0;
+    for (int64_t k = 0; (double)k < all && num < enough; ++k) num += is_usable_cell(lattice, k);
+    return num;
+}
 
 static scree_status make_lattice(const scree_simulation *s, const scree_particle_group_def *def,
                                  const drawn_group *group, fill_lattice *lattice, scree_report *report)
@@ -129,20 +168,30 @@ static scree_status make_lattice(const scree_simulation *s, const scree_particle
     const double diameter = 2 * s->particle_shapes[group->shape].properties.bounding_radius * group->largest_scale;
     lattice->cell = diameter * def->spacing;
     lattice->slack = 0.5 * (lattice->cell - diameter);
-    int64_t fits = 1;
+    lattice->cylinder = def->region.cylinder;
+    double narrowest = INFINITY;
+    for (int k = 0; k < 3; ++k)
+        if (is_across(lattice, k)) narrowest = fmin(narrowest, def->region.max[k] - def->region.min[k]);
     for (int k = 0; k < 3; ++k)
     {
-        const double extent = def->region[1][k] - def->region[0][k];
-        lattice->lower[k] = def->region[0][k];
-        lattice->num[k] = (int64_t)fmin(extent / lattice->cell * (1 + 1e-12), 1e7);
-        fits = lattice->num[k] > 0 && fits > INT64_MAX / 10000000 ? INT64_MAX : fits * lattice->num[k];
+        double extent = def->region.max[k] - def->region.min[k];
+        lattice->lower[k] = def->region.min[k];
+        lattice->middle[k] = 0.5 * (def->region.min[k] + def->region.max[k]);
+        if (is_across(lattice, k)) extent = narrowest;
+        lattice->num[k] = (int64_t)fmin(extent / lattice->cell * (1 + 1e-12), 1e6);
+        if (is_across(lattice, k))
+            lattice->lower[k] = lattice->middle[k] - 0.5 * (double)lattice->num[k] * lattice->cell;
     }
+    // the particle anywhere in its room, which reaches farthest along the diagonal across the axis
+    lattice->largest_distance = 0.5 * narrowest - 0.5 * diameter - lattice->slack * sqrt(2.0);
+    const int64_t fits = count_cells(lattice, group->num);
     if (fits >= group->num) return SCREE_OK;
     scree_report_add(report,
                      "particles \"%s\": the region holds %lld particles of up to %g m (cells of %g m, %lld x %lld x "
-                     "%lld), but %lld are asked for; make the region larger, for instance higher",
+                     "%lld%s), but %lld are asked for; make the region larger, for instance higher",
                      def->name, (long long)fits, diameter, lattice->cell, (long long)lattice->num[0],
-                     (long long)lattice->num[1], (long long)lattice->num[2], (long long)group->num);
+                     (long long)lattice->num[1], (long long)lattice->num[2],
+                     lattice->cylinder == SCREE_AXIS_NONE ? "" : ", those in the cylinder", (long long)group->num);
     return SCREE_INVALID_INPUT;
 }
 
@@ -185,17 +234,14 @@ static void place_listed(scree_simulation *s, const scree_body_def *body, int64_
         scree_mat3_apply(rotation, scree_vec3_make(inertia.x * w.x, inertia.y * w.y, inertia.z * w.z));
 }
 
-/// Particle number k of a filled group: cells from the bottom up, jittered by the room that is left, turned at random.
+/// Particle i of a filled group into cell k, jittered by the room that is left, turned at random.
 static void place_filled(scree_simulation *s, const scree_particle_group_def *def, const fill_lattice *lattice,
                          int64_t k, uint64_t *state, int64_t i)
 {
     scree_particles *p = &s->particles;
-    const int64_t cell[3] = {k % lattice->num[0], k / lattice->num[0] % lattice->num[1],
-                             k / lattice->num[0] / lattice->num[1]};
     double position[3];
-    for (int d = 0; d < 3; ++d)
-        position[d] =
-            lattice->lower[d] + ((double)cell[d] + 0.5) * lattice->cell + lattice->slack * (2 * random_unit(state) - 1);
+    cell_middle(lattice, k, position);
+    for (int d = 0; d < 3; ++d) position[d] += lattice->slack * (2 * random_unit(state) - 1);
     p->position[i] = vec3_from(position);
     p->orientation[i] = random_orientation(state);
     p->velocity[i] = vec3_from(def->velocity);
@@ -212,6 +258,7 @@ static scree_status place_group(scree_simulation *s, int32_t g, const drawn_grou
         if (status != SCREE_OK) return status;
     }
     uint64_t state = (uint64_t)def->seed * 2 + 2;
+    int64_t cell = 0;
     for (int64_t k = 0; k < group->num; ++k)
     {
         const int64_t i = first + k;
@@ -221,7 +268,11 @@ static scree_status place_group(scree_simulation *s, int32_t g, const drawn_grou
         s->particles.group[i] = g;
         set_inertia(s, i);
         if (def->num_bodies > 0) place_listed(s, def->bodies + k, i);
-        else place_filled(s, def, &lattice, k, &state, i);
+        else
+        {
+            while (!is_usable_cell(&lattice, cell)) ++cell;
+            place_filled(s, def, &lattice, cell++, &state, i);
+        }
     }
     return SCREE_OK;
 }

@@ -36,6 +36,31 @@ static void check_shape_size(scree_scene_reader *reader, const scree_yaml_node *
                               of, size[k]);
 }
 
+/// A polygon: three corners, and some area between them and the axis.
+static void check_profile(scree_scene_reader *reader, const scree_yaml_node *shape, const char *of)
+{
+    const scree_yaml_node *profile = scree_yaml_find(shape, "profile");
+    if (profile == NULL || profile->is_refused) return;
+    const int64_t num = scree_rules_num_items(profile);
+    double twice_area = 0;
+    for (int64_t k = 0; k < num; ++k)
+    {
+        const scree_yaml_node *a = profile->items[k], *b = profile->items[(k + 1) % num];
+        double r_a, z_a, r_b, z_b;
+        if (!scree_rules_number(a, "radius", &r_a) || !scree_rules_number(a, "height", &z_a) ||
+            !scree_rules_number(b, "radius", &r_b) || !scree_rules_number(b, "height", &z_b))
+            return;
+        twice_area += r_a * z_b - r_b * z_a;
+    }
+    if (num < 3)
+        scree_scene_fault(reader, scree_rules_place(shape, "profile"),
+                          "profile of %s has %lld corners; a source turned needs 3 or more, each like {radius: 0.1, "
+                          "height: 0}",
+                          of, (long long)num);
+    else if (twice_area == 0)
+        scree_scene_fault(reader, profile, "profile of %s has no area; its corners must not lie on one line", of);
+}
+
 static void check_shape(scree_scene_reader *reader, const scree_yaml_node *shape, const char *of)
 {
     const char *source = scree_rules_text(shape, "source"), *file = scree_rules_text(shape, "file");
@@ -44,7 +69,9 @@ static void check_shape(scree_scene_reader *reader, const scree_yaml_node *shape
     const bool is_rock = strcmp(source, "rock") == 0, is_sphere = strcmp(source, "sphere") == 0;
     if (is_file && file != NULL && file[0] == '\0')
         scree_scene_fault(reader, shape, "file of %s is missing; it must be the path of a mesh", of);
-    if (!is_file) check_shape_size(reader, shape, of, is_box);
+    const bool is_turned = strcmp(source, "turned") == 0;
+    if (!is_file && !is_turned) check_shape_size(reader, shape, of, is_box);
+    if (is_turned) check_profile(reader, shape, of);
 
     double triangles;
     const bool has_triangles = scree_rules_number(shape, "triangles", &triangles);
@@ -57,6 +84,9 @@ static void check_shape(scree_scene_reader *reader, const scree_yaml_node *shape
 
     if (!is_file) warn_unused_key(reader, shape, "file", of, "the source is not file");
     if (is_file) warn_unused_key(reader, shape, "size", of, "a file brings its own size");
+    if (is_turned) warn_unused_key(reader, shape, "size", of, "the profile has the lengths");
+    if (!is_turned) warn_unused_key(reader, shape, "profile", of, "the source is not turned");
+    if (!is_turned) warn_unused_key(reader, shape, "segments", of, "the source is not turned");
     if (!is_file && !is_rock && !is_sphere)
         warn_unused_key(reader, shape, "triangles", of, "the source fixes the number");
     if (!is_rock) warn_unused_key(reader, shape, "seed", of, "only rocks are drawn at random");

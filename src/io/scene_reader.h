@@ -6,7 +6,7 @@
 #include "io/scene_schema.h"
 #include "io/yaml_tree.h"
 
-#define SCREE_SCENE_MAX_SECTIONS 16
+#define SCREE_SCENE_MAX_SECTIONS 32
 #define SCREE_SCENE_PATH_SIZE 320
 /// Faults that are told one by one; the rest is counted.
 #define SCREE_SCENE_MAX_TOLD 100

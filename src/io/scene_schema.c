@@ -152,13 +152,32 @@ static const cyaml_strval_t shape_sources[] = {{"file", SCREE_SHAPE_FILE},
                                                {"tetrahedron", SCREE_SHAPE_TETRAHEDRON},
                                                {"schoenhardt", SCREE_SHAPE_SCHOENHARDT},
                                                {"sphere", SCREE_SHAPE_SPHERE},
-                                               {"rock", SCREE_SHAPE_ROCK}};
+                                               {"rock", SCREE_SHAPE_ROCK},
+                                               {"turned", SCREE_SHAPE_TURNED}};
+static const cyaml_schema_field_t profile_fields[] = {NUMBER(scree_profile_point, radius),
+                                                      NUMBER(scree_profile_point, height), CYAML_FIELD_END};
+static const scree_scene_key profile_keys[] = {
+    {.name = "radius", .unit = "m", .min = 0, .max = MAX_POSITION, .meaning = "distance from the axis; 0: on it"},
+    {.name = "height", .unit = "m", .min = -MAX_POSITION, .max = MAX_POSITION, .meaning = "along the axis, z"},
+};
+static const scree_scene_section profile_section = {
+    "shapes[].profile[]",
+    "Corners of the closed polygon that is turned about z, in either sense; the last is joined to the first. A drum "
+    "with end plates is the section of its shell on one side of the axis, a silo that of its wall and cone.",
+    profile_fields, profile_keys, COUNT(profile_keys)};
+static const cyaml_schema_value_t profile_value = {
+    CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, scree_profile_point, profile_fields)};
+
 static const cyaml_schema_field_t shape_fields[] = {TEXT(scree_shape_def, name),
                                                     WORD(scree_shape_def, source, shape_sources),
                                                     TEXT(scree_shape_def, file),
                                                     NUMBERS(scree_shape_def, size, 3),
                                                     INTEGER(scree_shape_def, triangles),
                                                     INTEGER(scree_shape_def, seed),
+                                                    LIST(scree_shape_def, profile, &profile_value),
+                                                    INTEGER(scree_shape_def, segments),
+                                                    NUMBERS(scree_shape_def, offset, 3),
+                                                    INTEGER(scree_shape_def, copies),
                                                     CYAML_FIELD_END};
 static const scree_scene_key shape_keys[] = {
     {.name = "name", .rule = SCREE_TEXT_NAME, .meaning = "what particles and walls call it"},
@@ -188,6 +207,30 @@ static const scree_scene_key shape_keys[] = {
      .min = 0,
      .max = MAX_INTEGER,
      .meaning = "of a rock: another number, another rock"},
+    {.name = "profile",
+     .default_text = "[]",
+     .section = &profile_section,
+     .max = 256,
+     .meaning = "of turned: from 3 corners on; it must not cross itself"},
+    {.name = "segments",
+     .unit = "1",
+     .default_text = "64",
+     .min = 3,
+     .max = 4096,
+     .meaning = "of turned: sides of the cross-sections, which have the area of the circle"},
+    {.name = "offset",
+     .unit = "m",
+     .default_text = "[0, 0, 0]",
+     .min = -MAX_POSITION,
+     .max = MAX_POSITION,
+     .meaning = "added to all vertices; only walls notice, particles are centred"},
+    {.name = "copies",
+     .unit = "1",
+     .default_text = "1",
+     .min = 1,
+     .max = 1000,
+     .meaning = "number of copies of the shifted mesh, turned evenly about z, that make one body: lifters of a drum. "
+                "They must not touch each other"},
 };
 static const scree_scene_section shape_section = {
     "shapes[]", "Closed triangle meshes, shared by all particles and walls that name them.", shape_fields, shape_keys,
@@ -240,14 +283,11 @@ static const scree_scene_section size_section = {
     "Sizes of the particles of a group: the middle one of the three extents of a particle's box in its own axes.",
     size_fields, size_keys, COUNT(size_keys)};
 
-static const cyaml_schema_field_t region_fields[] = {
-    {.key = "min",
-     .data_offset = 0,
-     .value = {CYAML_VALUE_SEQUENCE_FIXED(CYAML_FLAG_DEFAULT, double, &number_value, 3)}},
-    {.key = "max",
-     .data_offset = 3 * sizeof(double),
-     .value = {CYAML_VALUE_SEQUENCE_FIXED(CYAML_FLAG_DEFAULT, double, &number_value, 3)}},
-    CYAML_FIELD_END};
+static const cyaml_strval_t cylinder_axes[] = {
+    {"none", SCREE_AXIS_NONE}, {"x", SCREE_AXIS_X}, {"y", SCREE_AXIS_Y}, {"z", SCREE_AXIS_Z}};
+static const cyaml_schema_field_t region_fields[] = {NUMBERS(scree_region_def, min, 3),
+                                                     NUMBERS(scree_region_def, max, 3),
+                                                     WORD(scree_region_def, cylinder, cylinder_axes), CYAML_FIELD_END};
 static const scree_scene_key region_keys[] = {
     {.name = "min",
      .unit = "m",
@@ -261,10 +301,15 @@ static const scree_scene_key region_keys[] = {
      .min = -MAX_POSITION,
      .max = MAX_POSITION,
      .meaning = "upper corner"},
+    {.name = "cylinder",
+     .default_text = "none",
+     .meaning = "x, y or z: only the cylinder in the box along this axis, through its middle, as wide as the box is "
+                "narrow"},
 };
 static const scree_scene_section region_section = {
-    "particles[].region", "Box that a group of particles is filled into, on a lattice from the bottom up.",
-    region_fields, region_keys, COUNT(region_keys)};
+    "particles[].region",
+    "Box, or cylinder, that a group of particles is filled into, on a lattice from the bottom up.", region_fields,
+    region_keys, COUNT(region_keys)};
 
 static const cyaml_schema_field_t body_fields[] = {
     NUMBERS(scree_body_def, position, 3), NUMBERS(scree_body_def, orientation, 4),      NUMBER(scree_body_def, size),
@@ -330,7 +375,7 @@ static const scree_scene_key group_keys[] = {
      .min = 0,
      .max = 1e15,
      .meaning = "total mass to fill in: particles are added until it is reached"},
-    {.name = "region", .default_text = "{}", .section = &region_section, .meaning = "box to fill"},
+    {.name = "region", .default_text = "{}", .section = &region_section, .meaning = "what to fill"},
     {.name = "spacing",
      .unit = "1",
      .default_text = "1.05",

@@ -106,6 +106,48 @@ static void test_regions_that_are_too_small_are_told_together(void)
     SCREE_CHECK_CONTAINS(messages, "particles \"second\": the region holds 0 particles");
 }
 
+/// Every vertex inside the cylinder, along each axis; as many as the cross-section has room for.
+static void test_cylinders_are_filled(void)
+{
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        char text[2048];
+        snprintf(text, sizeof text,
+                 HEAD "particles:\n  - {name: fill, shape: cube, material: stone, count: 500, seed: 4, spacing: 1.2,\n"
+                      "     region: {min: [%g, %g, %g], max: [3, 3, 3], cylinder: %c}}\n",
+                 axis == 0 ? -3.0 : 1.0, axis == 1 ? -3.0 : 1.0, axis == 2 ? -3.0 : 1.0, "xyz"[axis]);
+        scene_run run;
+        scene_run_start(&run, text);
+        if (run.simulation == NULL) return;
+        const scree_particles *p = &run.simulation->particles;
+        const double bound = run.simulation->particle_shapes[p->shape[0]].properties.bounding_radius;
+        double farthest = 0;
+        for (int64_t i = 0; i < p->num_particles; ++i)
+        {
+            const double x[3] = {(double)p->position[i].x, (double)p->position[i].y, (double)p->position[i].z};
+            double squared = 0;
+            for (int k = 0; k < 3; ++k) squared += k == axis ? 0 : (x[k] - 2) * (x[k] - 2);
+            farthest = fmax(farthest, sqrt(squared));
+            SCREE_CHECK(x[axis] > -3 && x[axis] < 3);
+        }
+        SCREE_CHECK(farthest + bound <= 1);
+        SCREE_CHECK(farthest + bound > 0.8); // the rim is used
+        SCREE_CHECK_INT(run.simulation->contacts.num_contacts, 0);
+        scene_run_end(&run);
+    }
+    char messages[4096];
+    refuse(HEAD "particles:\n"
+                "  - {name: thin, shape: cube, material: stone, count: 1,\n"
+                "     region: {min: [0, 0, 0], max: [9, 0.1, 9], cylinder: x}}\n"
+                "  - {name: short, shape: cube, material: stone, count: 99,\n"
+                "     region: {min: [0, 0, 4], max: [1, 1, 4.2], cylinder: z}}\n",
+           messages, sizeof messages);
+    SCREE_CHECK_CONTAINS(messages, "particles \"thin\": the region holds 0 particles");
+    // middles at 0, 0.1819, 0.3637 from the axis; those within 0.5 - 0.0866 - 0.0061 count: all but the four corners
+    SCREE_CHECK_CONTAINS(messages, "particles \"short\": the region holds 21 particles");
+    SCREE_CHECK_CONTAINS(messages, "those in the cylinder");
+}
+
 static void test_bodies_inside_each_other_are_refused(void)
 {
     char messages[4096];
@@ -157,6 +199,7 @@ int main(void)
     SCREE_RUN(test_total_mass_is_reached_by_the_last_particle);
     SCREE_RUN(test_orientations_are_uniform);
     SCREE_RUN(test_regions_that_are_too_small_are_told_together);
+    SCREE_RUN(test_cylinders_are_filled);
     SCREE_RUN(test_bodies_inside_each_other_are_refused);
     SCREE_RUN(test_repose_angle_of_a_known_profile);
     return SCREE_TEST_END();

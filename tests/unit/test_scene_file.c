@@ -136,7 +136,7 @@ static void check_full_bodies(const scree_scene *s)
     SCREE_CHECK(fill->size.mean == 0.01 && fill->size.deviation == 0.005);
     SCREE_CHECK(fill->size.min == 0.004 && fill->size.max == 0.02);
     SCREE_CHECK(fill->count == 0 && fill->mass == 1.5 && fill->spacing == 1.25 && fill->seed == 9007199254740992);
-    SCREE_CHECK(equal3(fill->region[0], -1, -2, -3) && equal3(fill->region[1], 4, 5, 6));
+    SCREE_CHECK(equal3(fill->region.min, -1, -2, -3) && equal3(fill->region.max, 4, 5, 6));
     SCREE_CHECK(equal3(fill->velocity, 1, 2, 3) && fill->num_bodies == 0);
     SCREE_CHECK(listed->size.distribution == SCREE_SIZE_FIXED && listed->size.mean == 0.125);
     SCREE_CHECK_INT(listed->num_bodies, 1);
@@ -145,7 +145,7 @@ static void check_full_bodies(const scree_scene *s)
     SCREE_CHECK(equal3(body->angular_velocity, 7, 8, 9) && body->size == 0.5);
     SCREE_CHECK(equal3(body->orientation, 0, 1, 0) && body->orientation[3] == 0);
     SCREE_CHECK(many->size.distribution == SCREE_SIZE_UNIFORM && many->count == 12 && many->mass == 0);
-    SCREE_CHECK(equal3(many->region[0], 0, 0, 0) && equal3(many->region[1], 1, 1, 1));
+    SCREE_CHECK(equal3(many->region.min, 0, 0, 0) && equal3(many->region.max, 1, 1, 1));
     SCREE_CHECK_INT(s->num_walls, 3);
     const scree_wall_def *floor = s->walls, *lift = s->walls + 1, *drum = s->walls + 2;
     SCREE_CHECK(floor->motion.kind == SCREE_MOTION_FIXED && isinf(floor->removed_at) && floor->removed_at > 0);

@@ -1,0 +1,87 @@
+// Keys of turned shapes, copies and regions: values in the structures, and what is said of faults.
+#include "scene_run.h"
+
+#define HEAD                                                                                       \
+    "name: vessels\ntime: {end: 1, step: 1e-5}\n"                                                  \
+    "materials: [{name: stone, density: 2500, youngs_modulus: 1e7, poisson_ratio: 0.25}]\n"        \
+    "contact_laws: [{materials: [stone, stone], friction_coefficient: 0.4, damping_ratio: 0.3}]\n" \
+    "particles: [{name: one, shape: cube, material: stone, bodies: [{position: [0, 0, 0]}]}]\n"
+
+/// All messages of a scene in one text, which is overwritten by the next call.
+static const char *messages_of(const char *text)
+{
+    static char all[8192];
+    scree_scene_file file = {0};
+    scree_report report = {0};
+    scree_simulation *simulation = NULL;
+    all[0] = '\0';
+    scree_status status = scree_scene_parse(&file, text, "test.yaml", NULL, 0, &report);
+    if (status == SCREE_OK) status = scree_simulation_create(&simulation, &file.scene, file.folder, &report);
+    SCREE_CHECK((status == SCREE_OK) == (scree_report_num_faults(&report) == 0));
+    for (int k = 0; k < report.num_messages; ++k)
+        snprintf(all + strlen(all), sizeof all - strlen(all), "%s\n", report.messages[k]);
+    scree_simulation_destroy(simulation);
+    scree_scene_close(&file);
+    scree_report_clear(&report);
+    return all;
+}
+
+static void test_keys_reach_their_fields(void)
+{
+    scene_run run;
+    scene_run_start(&run, HEAD
+                    "shapes:\n"
+                    "  - {name: cube, source: box, size: 0.1}\n"
+                    "  - name: tube\n    source: turned\n    segments: 20\n"
+                    "    profile: [{radius: 0.5, height: -1}, {radius: 0.6, height: -1}, {radius: 0.6, height: 1}]\n"
+                    "  - {name: lifters, source: box, size: [0.1, 0.05, 1], offset: [0.4, 0, 0.25], copies: 6}\n"
+                    "walls:\n  - {name: tube, shape: tube, material: stone}\n"
+                    "  - {name: lifters, shape: lifters, material: stone}\n");
+    if (run.simulation == NULL) return;
+    const scree_shape_def *tube = run.file.scene.shapes + 1, *lifters = run.file.scene.shapes + 2;
+    SCREE_CHECK(tube->source == SCREE_SHAPE_TURNED && tube->num_profile == 3 && tube->segments == 20);
+    SCREE_CHECK(tube->profile[1].radius == 0.6 && tube->profile[2].height == 1 && tube->copies == 1);
+    SCREE_CHECK(lifters->copies == 6 && lifters->offset[0] == 0.4 && lifters->offset[2] == 0.25);
+    SCREE_CHECK_INT(run.simulation->wall_shapes[1].mesh.num_triangles, 120);
+    SCREE_CHECK_INT(run.simulation->wall_shapes[2].mesh.num_triangles, 72);
+    SCREE_CHECK_CLOSE(run.simulation->wall_shapes[2].view.box.upper.z, 0.75, 1e-6);
+    SCREE_CHECK_INT(run.report.num_messages, 0);
+    scene_run_end(&run);
+}
+
+static void test_faults(void)
+{
+    static const struct
+    {
+        const char *shape, *message;
+    } cases[] = {
+        {"source: turned", "test.yaml:7: profile of shapes.0 has 0 corners; a source turned needs 3 or more"},
+        {"source: turned, profile: [{radius: 0, height: 0}, {radius: 1, height: 1}, {radius: 2, height: 2}]",
+         "profile of shapes.0 has no area"},
+        {"source: turned, profile: [{radius: -1, height: 0}]", "radius of shapes.0.profile.0 is -1; it must be"},
+        {"source: turned, profile: [{radius: 1}]", "height of shapes.0.profile.0 is missing"},
+        {"source: turned, segments: 2", "segments of shapes.0 is 2; it must be an integer in [3, 4096]"},
+        {"source: turned, profile: [{radius: 0.1, height: 0}, {radius: 0.2, height: 0.1}, {radius: 0.2, height: 0}, "
+         "{radius: 0.1, height: 0.3}]",
+         "shape \"odd\": the sides of its profile must not touch or cross each other"},
+        {"source: box, copies: 9, offset: [0.5, 0, 0]", "shape \"odd\": its copies must not touch"},
+        {"source: box, copies: 0", "copies of shapes.0 is 0; it must be an integer in [1, 1000]"},
+        {"source: box, segments: 5", "segments of shapes.0 is not used: the source is not turned"},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; ++k)
+    {
+        char text[2048];
+        snprintf(text, sizeof text,
+                 HEAD "shapes:\n  - {name: odd, %s}\n  - {name: cube, source: box, size: 0.1}\n"
+                      "walls: [{name: odd, shape: odd, material: stone, position: [0, 0, -3]}]\n",
+                 cases[k].shape);
+        SCREE_CHECK_CONTAINS(messages_of(text), cases[k].message);
+    }
+}
+
+int main(void)
+{
+    SCREE_RUN(test_keys_reach_their_fields);
+    SCREE_RUN(test_faults);
+    return SCREE_TEST_END();
+}

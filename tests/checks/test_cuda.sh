@@ -1,12 +1,14 @@
 #!/usr/bin/env bash
 # Every .cu file compiles without warnings for the three architectures, in both precisions; the PTX holds no multiply-add
-# but those written as fma(); every kernel header compiles alone as CUDA. Nothing is run: that needs a device.
+# but those written as fma(); every kernel header compiles alone as CUDA. Nothing is run: that needs a device. The tests of
+# the stand-in for a device, tests/cuda_on_cpu, compile too: what it offers is what CUDA has.
 . "$(dirname "$0")/common.sh"
 nvcc=$(command -v nvcc || ls /usr/local/cuda/bin/nvcc 2>/dev/null) || { echo "skipped: there is no nvcc"; exit 77; }
 flags="-std=c++17 --fmad=false --ftz=false --prec-div=true --prec-sqrt=true -Werror=all-warnings"
 flags="$flags -Xcompiler=-Wall,-ffp-contract=off -Iinclude -Isrc"
 export nvcc flags scratch
 mapfile -t units < <(find src -name '*.cu' | LC_ALL=C sort)
+mapfile -t emulated < <(find tests/cuda_on_cpu -name 'test_*.cu' | LC_ALL=C sort)
 mapfile -t headers < <(find src -name '*_kernel.h' | LC_ALL=C sort)
 
 # One job a line: KIND FILE. Faults go to a file of their own, since two jobs run at a time.
@@ -23,6 +25,9 @@ job() {
     ptx)
         "$nvcc" $flags -arch=sm_80 -rdc=true -include tests/checks/mark_fma.h --ptx "$file" -o "$out.ptx" &&
             ! grep -nE '^[[:space:]]*(fma|mad)\.[a-z.]*f(32|64)' "$out.ptx"
+        ;;
+    test)
+        "$nvcc" $flags -Itests -Itests/cuda_on_cpu -arch=sm_80 -c "$file" -o "$out.o"
         ;;
     header)
         printf '#include "%s"\n' "${file#src/}" >"$out.cu"
@@ -42,6 +47,7 @@ export -f job
     printf 'float %s\n' "${units[@]}"
     printf 'ptx %s\n' "${units[@]}"
     printf 'header %s\n' "${headers[@]}"
+    printf 'test %s\n' "${emulated[@]}"
 } | xargs -P 2 -L 1 bash -c 'job "$@"' job
 cat "$scratch"/*.fault >"$scratch/faults" 2>/dev/null
 finish "CUDA files and kernel headers" $((${#units[@]} + ${#headers[@]})) "$scratch/faults"

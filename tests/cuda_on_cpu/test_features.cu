@@ -1,0 +1,257 @@
+// The stand-in does what CUDA does: barriers, warps, tiles, atomics with fences, the queue, CUB's sort and sums.
+#include "device_array.cuh"
+#include "harness.h"
+
+#include <cooperative_groups.h>
+#include <cub/device/device_radix_sort.cuh>
+#include <cub/device/device_scan.cuh>
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+
+constexpr int BLOCK = 128;
+constexpr int NUM = 1000; ///< not a multiple of a block, nor of a warp
+
+static unsigned num_blocks(unsigned num) { return (num + BLOCK - 1) / BLOCK; }
+
+static std::vector<int> made_numbers()
+{
+    std::vector<int> numbers(NUM);
+    for (int i = 0; i < NUM; ++i) numbers[static_cast<size_t>(i)] = i * 37 % 101 - 50;
+    return numbers;
+}
+
+__global__ void sum_block(const int *in, int *out, int num)
+{
+    __shared__ int shared[BLOCK];
+    const int i = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
+    shared[threadIdx.x] = i < num ? in[i] : 0;
+    __syncthreads();
+    for (unsigned half = blockDim.x / 2; half > 0; half /= 2)
+    {
+        if (threadIdx.x < half) shared[threadIdx.x] += shared[threadIdx.x + half];
+        __syncthreads();
+    }
+    if (threadIdx.x == 0) out[blockIdx.x] = shared[0];
+}
+
+static void test_block_sums()
+{
+    const std::vector<int> numbers = made_numbers();
+    const device_array<int> in(numbers), out(num_blocks(NUM));
+    SCREE_CUDA(start_kernel(sum_block, num_blocks(NUM), BLOCK, in.data, out.data, NUM));
+    const std::vector<int> sums = out.read();
+    SCREE_CHECK_INT(std::accumulate(sums.begin(), sums.end(), 0), std::accumulate(numbers.begin(), numbers.end(), 0));
+    SCREE_CHECK_INT(sums[1], std::accumulate(numbers.begin() + BLOCK, numbers.begin() + 2 * BLOCK, 0));
+}
+
+template <unsigned Size> __global__ void sum_tile(const int *in, int *out, int num)
+{
+    namespace groups = cooperative_groups;
+    const groups::thread_block_tile<Size> tile = groups::tiled_partition<Size>(groups::this_thread_block());
+    const int i = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
+    int sum = i < num ? in[i] : 0;
+    for (int with = Size / 2; with > 0; with /= 2) sum += tile.shfl_xor(sum, with);
+    const unsigned positive = tile.ballot(i < num && in[i] > 0);
+    if (tile.thread_rank() != 0) return;
+    out[2 * (i / static_cast<int>(Size))] = sum;
+    out[2 * (i / static_cast<int>(Size)) + 1] = __popc(positive);
+}
+
+template <unsigned Size> static void check_tiles()
+{
+    const std::vector<int> numbers = made_numbers();
+    const device_array<int> in(numbers), out(2 * num_blocks(NUM) * BLOCK / Size);
+    SCREE_CUDA(start_kernel(sum_tile<Size>, num_blocks(NUM), BLOCK, in.data, out.data, NUM));
+    const std::vector<int> sums = out.read();
+    for (size_t t = 0; t < sums.size() / 2; ++t)
+    {
+        int sum = 0, num_positive = 0;
+        for (size_t i = t * Size; i < (t + 1) * Size && i < NUM; ++i)
+        {
+            sum += numbers[i];
+            num_positive += numbers[i] > 0;
+        }
+        SCREE_CHECK_INT(sums[2 * t], sum);
+        SCREE_CHECK_INT(sums[2 * t + 1], num_positive);
+    }
+}
+
+static void test_tiles()
+{
+    check_tiles<1>();
+    check_tiles<8>();
+    check_tiles<16>();
+    check_tiles<32>();
+}
+
+/// Each lane gets the value of the lane before it; a short last warp has fewer lanes.
+__global__ void shift_lanes(int *out)
+{
+    const int value = static_cast<int>(threadIdx.x);
+    out[threadIdx.x] = __shfl_up_sync(0xffffffffu, value, 1);
+}
+
+static void test_short_warp()
+{
+    const device_array<int> out(45);
+    SCREE_CUDA(start_kernel(shift_lanes, 1, 45, out.data));
+    const std::vector<int> shifted = out.read();
+    for (int i = 0; i < 45; ++i) SCREE_CHECK_INT(shifted[static_cast<size_t>(i)], i % 32 == 0 ? i : i - 1);
+}
+
+/// The second child to arrive at a parent adds up the children, as in a tree that is built from the leaves upwards.
+__global__ void sum_upwards(const int *leaves, int *nodes, unsigned *arrivals, int num_leaves)
+{
+    const int i = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
+    if (i >= num_leaves) return;
+    int k = num_leaves - 1 + i;
+    nodes[k] = leaves[i];
+    while (k > 0)
+    {
+        k = (k - 1) / 2;
+        __threadfence();
+        if (atomicAdd(arrivals + k, 1u) == 0) return;
+        __threadfence();
+        nodes[k] = nodes[2 * k + 1] + nodes[2 * k + 2];
+    }
+}
+
+static void test_arrivals()
+{
+    const std::vector<int> numbers = made_numbers();
+    device_array<int> leaves(numbers), nodes(2 * NUM - 1);
+    device_array<unsigned> arrivals(NUM);
+    arrivals.fill(0);
+    SCREE_CUDA(start_kernel(sum_upwards, num_blocks(NUM), BLOCK, leaves.data, nodes.data, arrivals.data, NUM));
+    SCREE_CHECK_INT(nodes.read()[0], std::accumulate(numbers.begin(), numbers.end(), 0));
+}
+
+/// Every thread notes its turn.
+__global__ void note_turn(int *turns, int *num_turns)
+{
+    const int turn = atomicAdd(num_turns, 1);
+    turns[turn] = static_cast<int>(threadIdx.x);
+}
+
+static void test_schedule()
+{
+    device_array<int> turns(BLOCK), num_turns(1);
+    num_turns.fill(0);
+    SCREE_CUDA(start_kernel(note_turn, 1, BLOCK, turns.data, num_turns.data));
+    const std::vector<int> order = turns.read();
+    std::vector<int> sorted = order;
+    std::sort(sorted.begin(), sorted.end());
+    for (int i = 0; i < BLOCK; ++i) SCREE_CHECK_INT(sorted[static_cast<size_t>(i)], i);
+    const char *schedule = getenv("CUDA_ON_CPU_SCHEDULE");
+    const std::string name = schedule != nullptr ? schedule : "fifo";
+    SCREE_CHECK(std::is_sorted(order.begin(), order.end()) == (name == "fifo"));
+    SCREE_CHECK(std::is_sorted(order.rbegin(), order.rend()) == (name == "lifo"));
+}
+
+#ifdef CUDA_ON_CPU_DYNAMIC_SHARED
+__global__ void reverse(int *values)
+{
+    CUDA_ON_CPU_DYNAMIC_SHARED(int, shared);
+    shared[threadIdx.x] = values[threadIdx.x];
+    __syncthreads();
+    values[threadIdx.x] = shared[blockDim.x - 1 - threadIdx.x];
+}
+
+static void test_dynamic_shared()
+{
+    const device_array<int> values(made_numbers());
+    cudaLaunchConfig_t config = {};
+    config.gridDim = dim3(1);
+    config.blockDim = dim3(BLOCK);
+    config.dynamicSmemBytes = BLOCK * sizeof(int);
+    SCREE_CUDA(cudaLaunchKernelEx(&config, reverse, values.data));
+    const std::vector<int> before = made_numbers(), after = values.read();
+    for (size_t i = 0; i < BLOCK; ++i) SCREE_CHECK_INT(after[i], before[BLOCK - 1 - i]);
+}
+#endif
+
+static void test_queue()
+{
+    const std::vector<int> numbers = made_numbers();
+    const device_array<int> in(numbers);
+    std::vector<int> out(NUM, 7);
+    SCREE_CUDA(cudaMemcpyAsync(out.data(), in.data, NUM * sizeof(int), cudaMemcpyDeviceToHost, nullptr));
+    SCREE_CHECK_INT(out[0], 7); // nothing has come yet
+    SCREE_CUDA(cudaStreamSynchronize(nullptr));
+    SCREE_CHECK(out == numbers);
+}
+
+static void test_refused_launch()
+{
+    const device_array<int> out(BLOCK);
+    SCREE_CHECK_INT(start_kernel(shift_lanes, 1, 2048, out.data), cudaErrorInvalidConfiguration);
+    SCREE_CHECK_INT(cudaGetLastError(), cudaErrorInvalidConfiguration);
+    SCREE_CHECK_INT(cudaGetLastError(), cudaSuccess);
+}
+
+static void test_sort()
+{
+    std::vector<uint64_t> keys(NUM);
+    std::vector<int> values(NUM), order(NUM);
+    for (size_t i = 0; i < NUM; ++i)
+    {
+        keys[i] = i * 2654435761u % 64 << 32 | i; // the lowest 32 bits are not looked at
+        values[i] = order[i] = static_cast<int>(i);
+    }
+    std::stable_sort(order.begin(), order.end(),
+                     [&](int i, int j)
+                     { return keys[static_cast<size_t>(i)] >> 32 < keys[static_cast<size_t>(j)] >> 32; });
+    const device_array<uint64_t> d_keys(keys), d_spare_keys(NUM);
+    const device_array<int> d_values(values), d_spare_values(NUM);
+    for (int end_bit = 40; end_bit <= 64; end_bit += 8)
+    {
+        cub::DoubleBuffer<uint64_t> both_keys(d_keys.data, d_spare_keys.data);
+        cub::DoubleBuffer<int> both_values(d_values.data, d_spare_values.data);
+        SCREE_CUDA(cudaMemcpy(d_keys.data, keys.data(), NUM * sizeof(uint64_t), cudaMemcpyHostToDevice));
+        SCREE_CUDA(cudaMemcpy(d_values.data, values.data(), NUM * sizeof(int), cudaMemcpyHostToDevice));
+        size_t num_bytes = 0;
+        SCREE_CUDA(cub::DeviceRadixSort::SortPairs(nullptr, num_bytes, both_keys, both_values, NUM, 32, end_bit));
+        const device_array<char> scratch(num_bytes);
+        SCREE_CUDA(cub::DeviceRadixSort::SortPairs(scratch.data, num_bytes, both_keys, both_values, NUM, 32, end_bit));
+        std::vector<int> sorted(NUM);
+        SCREE_CUDA(cudaMemcpy(sorted.data(), both_values.Current(), NUM * sizeof(int), cudaMemcpyDeviceToHost));
+        SCREE_CHECK(sorted == order);
+        SCREE_CUDA(cudaMemcpy(sorted.data(), both_keys.Current(), NUM, cudaMemcpyDeviceToHost));
+    }
+}
+
+static void test_sums()
+{
+    const std::vector<int> numbers = made_numbers();
+    const device_array<int> in(numbers), out(NUM);
+    size_t num_bytes = 0;
+    SCREE_CUDA(cub::DeviceScan::ExclusiveSum(nullptr, num_bytes, in.data, out.data, NUM));
+    const device_array<char> scratch(num_bytes);
+    SCREE_CUDA(cub::DeviceScan::ExclusiveSum(scratch.data, num_bytes, in.data, out.data, NUM));
+    const std::vector<int> sums = out.read();
+    int sum = 0;
+    for (size_t i = 0; i < NUM; ++i)
+    {
+        SCREE_CHECK_INT(sums[i], sum);
+        sum += numbers[i];
+    }
+}
+
+int main()
+{
+    SCREE_RUN(test_block_sums);
+    SCREE_RUN(test_tiles);
+    SCREE_RUN(test_short_warp);
+    SCREE_RUN(test_arrivals);
+    SCREE_RUN(test_schedule);
+#ifdef CUDA_ON_CPU_DYNAMIC_SHARED
+    SCREE_RUN(test_dynamic_shared);
+#endif
+    SCREE_RUN(test_queue);
+    SCREE_RUN(test_refused_launch);
+    SCREE_RUN(test_sort);
+    SCREE_RUN(test_sums);
+    return SCREE_TEST_END();
+}

@@ -58,6 +58,19 @@ extern "C"
     /// Energies at the present moment.
     scree_energies scree_simulation_energies(const scree_simulation *simulation);
     scree_counters scree_simulation_counters(const scree_simulation *simulation);
+    /// What a moving wall does to the particles along its motion.
+    typedef struct scree_wall_load
+    {
+        double load; ///< now: torque about the axis of a wall that rotates [N m], force along the velocity of one that
+                     ///< translates [N]
+        double work; ///< [J] done on the particles so far
+        int64_t num_revolutions; ///< whole ones so far
+        double revolution_power; ///< [W] mean over the last whole revolution; 0 before the first
+    } scree_wall_load;
+
+    /// Of wall number `wall` of the scene; zeros for one that never moves. The works of all walls sum up to the energy
+    /// `input`.
+    scree_wall_load scree_simulation_wall_load(const scree_simulation *simulation, int32_t wall);
     /// 64-bit hash of the moving state; equal states have equal hashes.
     uint64_t scree_simulation_hash(const scree_simulation *simulation);
 

@@ -236,6 +236,7 @@ static scree_status start(scree_simulation *s, scree_report *report)
     if (status == SCREE_OK) status = scree_update_contacts(s);
     if (status == SCREE_OK) status = check_initial_contacts(s, report);
     if (status == SCREE_OK) status = scree_update_forces(s);
+    if (status == SCREE_OK) status = scree_update_wall_loads(s);
     return status;
 }
 
@@ -273,6 +274,7 @@ scree_status scree_simulation_create(scree_simulation **simulation, const scree_
     if (status == SCREE_OK) status = scree_populate(s, report);
     if (status == SCREE_OK) status = choose_time_step(s, report);
     if (status == SCREE_OK) status = scree_step_buffers_create(s);
+    if (status == SCREE_OK) status = scree_wall_axes_create(s);
     if (status == SCREE_OK) status = start(s, report);
     if (status != SCREE_OK)
     {
@@ -304,6 +306,7 @@ void scree_simulation_destroy(scree_simulation *simulation)
     }
     scree_step_buffers_destroy(simulation);
     scree_particles_destroy(&simulation->particles);
+    scree_wall_loads_destroy(&simulation->wall_loads);
     scree_contact_list_destroy(&simulation->contacts);
     scree_contact_list_destroy(&simulation->old_contacts);
     scree_broad_phase_destroy(&simulation->broad_phase);

@@ -7,6 +7,7 @@
 #include "contact/contact_list.h"
 #include "contact/narrow_phase.h"
 #include "dynamics/particles.h"
+#include "dynamics/wall_loads.h"
 #include "dynamics/walls.h"
 #include "forces/force_model.h"
 #include "polyhedra/shape.h"
@@ -33,6 +34,7 @@ struct scree_simulation
     scree_contact_list contacts; ///< of the present step
     scree_energies energies;     ///< accumulated parts; see simulation.h
     scree_counters counters;
+    scree_wall_loads wall_loads; ///< torques, forces and work of moving walls
 
     // scratch
     scree_contact_list old_contacts; ///< of the step before, for the history

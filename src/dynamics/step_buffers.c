@@ -60,6 +60,8 @@ void scree_step_buffers_destroy(scree_simulation *simulation)
     free(b->centres);
     free(b->radii);
     free(b->broad_phase_walls);
+    free(b->moving_wall);
+    free(b->wall_axes);
     free(b->old_of_contact);
     free(b->is_continued);
     free(b->work_sums);

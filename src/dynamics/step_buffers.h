@@ -27,6 +27,11 @@ typedef struct scree_step_buffers
     scree_real skin;                           ///< [m]
     bool has_pairs;                            ///< false: search before the next step
 
+    // moving walls
+    int32_t *moving_wall;       ///< (num_walls) index among the moving ones, or -1
+    scree_wall_axis *wall_axes; ///< (num_moving_walls)
+    int32_t num_moving_walls;
+
     // contacts
     bool is_old_list_of_same_pairs; ///< old contacts can be found by the index of their candidate pair
     int64_t *old_of_contact;
@@ -39,6 +44,8 @@ typedef struct scree_step_buffers
 
 /// Allocates the arrays over bodies; num_walls from the simulation.
 scree_status scree_step_buffers_create(scree_simulation *simulation);
+/// Axes of the moving walls, and room for their loads.
+scree_status scree_wall_axes_create(scree_simulation *simulation);
 void scree_step_buffers_destroy(scree_simulation *simulation);
 
 /// Poses and velocities of the walls at `time`, to the wall states and the body arrays.

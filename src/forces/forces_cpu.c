@@ -2,4 +2,5 @@
 
 SCREE_DEFINE_LAUNCH(scree_contact_force)
 SCREE_DEFINE_LAUNCH(scree_gather)
+SCREE_DEFINE_LAUNCH(scree_wall_load)
 SCREE_DEFINE_LAUNCH(scree_work)

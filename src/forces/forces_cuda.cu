@@ -1,8 +1,10 @@
 #include "core/launch_cuda.cuh"
 #include "forces/contact_force_kernel.h"
 #include "forces/gather_kernel.h"
+#include "forces/wall_load_kernel.h"
 #include "forces/work_kernel.h"
 
 SCREE_DEFINE_LAUNCH(scree_contact_force)
 SCREE_DEFINE_LAUNCH(scree_gather)
+SCREE_DEFINE_LAUNCH(scree_wall_load)
 SCREE_DEFINE_LAUNCH(scree_work)

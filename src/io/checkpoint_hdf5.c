@@ -19,7 +19,7 @@
 #define FORMAT_NAME "scree checkpoint"
 enum
 {
-    FORMAT_VERSION = 1,
+    FORMAT_VERSION = 2,
     HASH_TEXT = 17
 };
 /// More than any memory holds: the number in the file is not to be believed.
@@ -27,6 +27,7 @@ enum
 
 _Static_assert(offsetof(scree_particles, num_particles) == 0, "put_arrays() reads the number of items there");
 _Static_assert(offsetof(scree_contact_list, num_contacts) == 0, "put_arrays() reads the number of items there");
+_Static_assert(offsetof(scree_wall_loads, num_walls) == 0, "put_arrays() reads the number of items there");
 
 // ---- hashes
 
@@ -99,7 +100,7 @@ static uint64_t hash_arrays(uint64_t hash, const scree_field *fields, int num_fi
 }
 
 static uint64_t contents_hash(const scree_series_row *row, const scree_particles *particles,
-                              const scree_contact_list *contacts)
+                              const scree_contact_list *contacts, const scree_wall_loads *walls)
 {
     int num_fields;
     const scree_field *fields = scree_series_fields(&num_fields);
@@ -108,7 +109,9 @@ static uint64_t contents_hash(const scree_series_row *row, const scree_particles
     fields = scree_particle_fields(&num_fields);
     hash = hash_arrays(hash, fields, num_fields, particles, particles->num_particles);
     fields = scree_contact_fields(&num_fields);
-    return hash_arrays(hash, fields, num_fields, contacts, contacts->num_contacts);
+    hash = hash_arrays(hash, fields, num_fields, contacts, contacts->num_contacts);
+    fields = scree_wall_fields(&num_fields);
+    return hash_arrays(hash, fields, num_fields, walls, walls->num_walls);
 }
 
 // ---- writing
@@ -151,7 +154,7 @@ static bool put_array(hid_t group, const scree_field *field, const void *array, 
     return H5Dclose(dataset) >= 0;
 }
 
-/// `structure` is a scree_particles or a scree_contact_list: the number of items is their first member.
+/// `structure` is a scree_particles, scree_contact_list or scree_wall_loads: the number of items is their first member.
 static bool put_arrays(hid_t file, const char *name, const scree_field *fields, int num_fields, const void *structure)
 {
     int64_t num;
@@ -180,19 +183,21 @@ static bool put_head(hid_t file, const scree_simulation *simulation, const scree
            scree_hdf5_put_number(file, "num_contacts", SCREE_FIELD_INT64, &contacts->num_contacts) &&
            scree_hdf5_put_number(file, "time_step", SCREE_FIELD_DOUBLE, &simulation->time_step) &&
            put_hash(file, "scene_hash", scene_hash(simulation)) &&
-           put_hash(file, "contents_hash", contents_hash(row, particles, contacts)) &&
+           put_hash(file, "contents_hash", contents_hash(row, particles, contacts, &simulation->wall_loads)) &&
            put_hash(file, "state_hash", scree_simulation_hash(simulation));
 }
 
 static bool put_everything(hid_t file, const scree_simulation *simulation)
 {
     const scree_series_row row = scree_series_row_of(simulation);
-    int num_particle_fields, num_contact_fields;
+    int num_particle_fields, num_contact_fields, num_wall_fields;
     const scree_field *particle_fields = scree_particle_fields(&num_particle_fields);
     const scree_field *contact_fields = scree_contact_fields(&num_contact_fields);
+    const scree_field *wall_fields = scree_wall_fields(&num_wall_fields);
     return put_head(file, simulation, &row) && put_row(file, &row) &&
            put_arrays(file, "/particles", particle_fields, num_particle_fields, &simulation->particles) &&
-           put_arrays(file, "/contacts", contact_fields, num_contact_fields, &simulation->contacts);
+           put_arrays(file, "/contacts", contact_fields, num_contact_fields, &simulation->contacts) &&
+           put_arrays(file, "/walls", wall_fields, num_wall_fields, &simulation->wall_loads);
 }
 
 static scree_status save(const scree_simulation *simulation, const char *temporary, scree_report *report)
@@ -231,6 +236,7 @@ typedef struct loaded_state
     scree_series_row row;
     scree_particles particles;
     scree_contact_list contacts;
+    scree_wall_loads walls;
 } loaded_state;
 
 static bool get_hash(hid_t object, const char *name, uint64_t *hash)
@@ -360,20 +366,23 @@ static scree_status allocate_state(hid_t file, const scree_simulation *simulatio
     if (status == SCREE_OK)
         status = scree_contact_list_reserve(&state->contacts, num_contacts > 0 ? num_contacts : 1, 0);
     state->contacts.num_contacts = num_contacts;
+    if (status == SCREE_OK) status = scree_wall_loads_create(&state->walls, simulation->wall_loads.num_walls);
     return status;
 }
 
 static scree_status read_state(hid_t file, loaded_state *state, const char *path, scree_report *report)
 {
-    int num_particle_fields, num_contact_fields;
+    int num_particle_fields, num_contact_fields, num_wall_fields;
     const scree_field *particle_fields = scree_particle_fields(&num_particle_fields);
     const scree_field *contact_fields = scree_contact_fields(&num_contact_fields);
+    const scree_field *wall_fields = scree_wall_fields(&num_wall_fields);
     uint64_t hash = 0;
     if (get_row(file, &state->row) &&
         get_arrays(file, "/particles", particle_fields, num_particle_fields, &state->particles) &&
         get_arrays(file, "/contacts", contact_fields, num_contact_fields, &state->contacts) &&
+        get_arrays(file, "/walls", wall_fields, num_wall_fields, &state->walls) &&
         get_hash(file, "contents_hash", &hash) &&
-        hash == contents_hash(&state->row, &state->particles, &state->contacts))
+        hash == contents_hash(&state->row, &state->particles, &state->contacts, &state->walls))
         return SCREE_OK;
     scree_report_add(report, "%s is damaged: what it holds is not what was written", path);
     return SCREE_READ_FAILED;
@@ -435,10 +444,13 @@ static void exchange(scree_simulation *simulation, loaded_state *state)
 {
     const scree_particles particles = simulation->particles;
     const scree_contact_list contacts = simulation->contacts;
+    const scree_wall_loads walls = simulation->wall_loads;
     simulation->particles = state->particles;
     simulation->contacts = state->contacts;
     state->particles = particles;
     state->contacts = contacts;
+    simulation->wall_loads = state->walls;
+    state->walls = walls;
     simulation->step = state->row.step;
     simulation->energies = state->row.energies;
     simulation->counters = state->row.counters;
@@ -459,6 +471,7 @@ static scree_status load(scree_simulation *simulation, hid_t file, const char *p
     if (status == SCREE_OK) exchange(simulation, &state);
     scree_particles_destroy(&state.particles);
     scree_contact_list_destroy(&state.contacts);
+    scree_wall_loads_destroy(&state.walls);
     return status;
 }
 

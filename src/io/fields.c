@@ -92,6 +92,19 @@ static const scree_field contact_fields[] = {
     CONTACT(spring_energy, "J", "stored in the tangential and the torsion spring", SCREE_FIELD_REAL, 1),
 };
 
+#define WALL(member, unit, text, type)                                   \
+    {                                                                    \
+#member, unit, text, type, 1, offsetof(scree_wall_loads, member) \
+    }
+
+static const scree_field wall_fields[] = {
+    WALL(load, "N m or N", "torque or force on the particles along the wall's motion", SCREE_FIELD_DOUBLE),
+    WALL(work, "J", "work done on the particles so far", SCREE_FIELD_DOUBLE),
+    WALL(marked_work, "J", "work at the last whole revolution", SCREE_FIELD_DOUBLE),
+    WALL(marked_step, "1", "step of the last whole revolution", SCREE_FIELD_INT64),
+    WALL(revolution_power, "W", "mean power over the last whole revolution, 0 before the first", SCREE_FIELD_DOUBLE),
+};
+
 // an array that is added to the particles or contacts must be added to its table, or a restart would lose it
 _Static_assert(sizeof(scree_particles) == offsetof(scree_particles, position) +
                                               sizeof particle_fields / sizeof particle_fields[0] * sizeof(void *),
@@ -99,6 +112,9 @@ _Static_assert(sizeof(scree_particles) == offsetof(scree_particles, position) +
 _Static_assert(sizeof(scree_contact_list) == offsetof(scree_contact_list, bodies) +
                                                  sizeof contact_fields / sizeof contact_fields[0] * sizeof(void *),
                "add the new array to contact_fields");
+_Static_assert(sizeof(scree_wall_loads) ==
+                   offsetof(scree_wall_loads, load) + sizeof wall_fields / sizeof wall_fields[0] * sizeof(void *),
+               "add the new array to wall_fields");
 
 const scree_field scree_frame_particle = {"particle", "1", "id of the particle", SCREE_FIELD_INT32, 1, 0};
 const scree_field scree_frame_group = {"group",           "1", "index of the particle group in the scene",
@@ -135,6 +151,12 @@ const scree_field *scree_contact_fields(int *num_fields)
 {
     *num_fields = (int)(sizeof contact_fields / sizeof contact_fields[0]);
     return contact_fields;
+}
+
+const scree_field *scree_wall_fields(int *num_fields)
+{
+    *num_fields = (int)(sizeof wall_fields / sizeof wall_fields[0]);
+    return wall_fields;
 }
 
 size_t scree_field_size(const scree_field *field)

@@ -39,12 +39,14 @@ typedef struct scree_series_row
 
 scree_series_row scree_series_row_of(const scree_simulation *simulation);
 
-/// The tables. (*num_fields) entries; offsets are into scree_series_row, scree_particles and scree_contact_list.
+/// The tables. (*num_fields) entries; offsets are into scree_series_row, scree_particles, scree_contact_list and
+/// scree_wall_loads.
 const scree_field *scree_series_fields(int *num_fields);
 const scree_field *scree_particle_fields(int *num_fields);
 /// How many of the first particle fields are the moving state; the others are constant.
 int scree_num_moving_particle_fields(void);
 const scree_field *scree_contact_fields(int *num_fields);
+const scree_field *scree_wall_fields(int *num_fields);
 /// Arrays of frames.vtkhdf, walls.vtkhdf and contacts.vtkhdf; offsets unused.
 extern const scree_field scree_frame_particle, scree_frame_group, scree_frame_speed;
 extern const scree_field scree_frame_wall;

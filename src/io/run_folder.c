@@ -188,8 +188,8 @@ static scree_status open_files(scree_run_folder *folder, const scree_run_folder_
 {
     char *series_path = scree_path_join(folder->path, "series.csv");
     if (series_path == NULL) return SCREE_OUT_OF_MEMORY;
-    scree_status status =
-        scree_series_open(&folder->series, series_path, folder->is_restart ? simulation->step : -1, report);
+    scree_status status = scree_series_open(&folder->series, series_path, simulation->scene,
+                                            folder->is_restart ? simulation->step : -1, report);
     free(series_path);
     // the series is locked now, so nobody else writes what is removed here
     if (status == SCREE_OK && !folder->is_restart) status = remove_files(folder->path, report);

@@ -23,8 +23,10 @@ void scree_locale_end(scree_locale locale);
 
 typedef struct scree_series scree_series;
 
-/// series.csv at `path`, locked against a second run. With `last_step` >= 0 the rows up to it are kept.
-scree_status scree_series_open(scree_series **series, const char *path, int64_t last_step, scree_report *report);
+/// series.csv at `path`, locked against a second run. Moving walls of the scene bring columns of their own. With
+/// `last_step` >= 0 the rows up to it are kept.
+scree_status scree_series_open(scree_series **series, const char *path, const scree_scene *scene, int64_t last_step,
+                               scree_report *report);
 /// Nothing happens if there is a row of this or a later step. On SCREE_WRITE_FAILED the file ends with a whole line.
 scree_status scree_series_write(scree_series *series, const scree_simulation *simulation, scree_report *report);
 /// Largest energy in motion, in springs or dissipated that a row had [J].

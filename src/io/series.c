@@ -15,7 +15,8 @@
 
 enum
 {
-    MAX_LINE = 2048
+    MAX_FIELDS_LENGTH = 2048,     ///< of the columns that every series has
+    MAX_WALL_COLUMNS_LENGTH = 640 ///< of the two columns of one moving wall
 };
 
 struct scree_series
@@ -25,30 +26,70 @@ struct scree_series
     int64_t size;      ///< bytes of whole lines
     int64_t last_step; ///< of the last row; -1 if there is none
     double turned_over;
+    int num_columns;
+    char *line; ///< (max_line) scratch
+    size_t max_line;
 };
 
-static int format_header(char line[MAX_LINE])
+static bool has_columns(const scree_wall_def *wall) { return wall->motion.kind != SCREE_MOTION_FIXED; }
+
+/// Room for the longest line.
+static scree_status reserve_line(scree_series *series, const scree_scene *scene)
 {
-    int num_fields, length = 0;
+    int num_fields;
+    scree_series_fields(&num_fields);
+    series->num_columns = num_fields;
+    series->max_line = MAX_FIELDS_LENGTH;
+    for (uint32_t w = 0; w < scene->num_walls; ++w)
+    {
+        if (!has_columns(scene->walls + w)) continue;
+        series->num_columns += 2;
+        series->max_line += MAX_WALL_COLUMNS_LENGTH;
+    }
+    series->line = malloc(series->max_line);
+    return series->line != NULL ? SCREE_OK : SCREE_OUT_OF_MEMORY;
+}
+
+/// The header into `series->line`; returns its length.
+static int format_header(scree_series *series, const scree_scene *scene)
+{
+    int num_fields;
+    size_t length = 0;
     const scree_field *fields = scree_series_fields(&num_fields);
     for (int k = 0; k < num_fields; ++k)
-        length += snprintf(line + length, (size_t)(MAX_LINE - length), "%s%s [%s]", k > 0 ? "," : "", fields[k].name,
-                           fields[k].unit);
-    return length + snprintf(line + length, (size_t)(MAX_LINE - length), "\n");
+        length += (size_t)snprintf(series->line + length, series->max_line - length, "%s%s [%s]", k > 0 ? "," : "",
+                                   fields[k].name, fields[k].unit);
+    for (uint32_t w = 0; w < scene->num_walls; ++w)
+    {
+        const scree_wall_def *wall = scene->walls + w;
+        const bool is_rotating = wall->motion.kind == SCREE_MOTION_ROTATE;
+        if (!has_columns(wall)) continue;
+        length += (size_t)snprintf(series->line + length, series->max_line - length, ",%s_%.255s [%s],work_%.255s [J]",
+                                   is_rotating ? "torque" : "force", wall->name, is_rotating ? "N m" : "N", wall->name);
+    }
+    return (int)length + snprintf(series->line + length, series->max_line - length, "\n");
 }
 
 /// Numbers with 17 digits: reading them back gives the same bits.
-static int format_row(const scree_series_row *row, char line[MAX_LINE])
+static int format_row(scree_series *series, const scree_series_row *row, const scree_simulation *simulation)
 {
-    int num_fields, length = 0;
+    int num_fields;
+    size_t length = 0;
     const scree_field *fields = scree_series_fields(&num_fields);
     for (int k = 0; k < num_fields; ++k)
     {
         const double value = scree_field_value(fields + k, row);
-        length += snprintf(line + length, (size_t)(MAX_LINE - length),
-                           fields[k].type == SCREE_FIELD_INT64 ? "%s%.0f" : "%s%.17g", k > 0 ? "," : "", value);
+        length += (size_t)snprintf(series->line + length, series->max_line - length,
+                                   fields[k].type == SCREE_FIELD_INT64 ? "%s%.0f" : "%s%.17g", k > 0 ? "," : "", value);
     }
-    return length + snprintf(line + length, (size_t)(MAX_LINE - length), "\n");
+    for (int32_t w = 0; w < simulation->num_walls; ++w)
+    {
+        if (!has_columns(simulation->scene->walls + w)) continue;
+        const scree_wall_load load = scree_simulation_wall_load(simulation, w);
+        length +=
+            (size_t)snprintf(series->line + length, series->max_line - length, ",%.17g,%.17g", load.load, load.work);
+    }
+    return (int)length + snprintf(series->line + length, series->max_line - length, "\n");
 }
 
 /// Energy that is in motion or in springs, or has been dissipated: what an error of the balance is compared with.
@@ -65,17 +106,18 @@ static void note_row(scree_series *series, const scree_series_row *row)
     series->last_step = row->step;
 }
 
-/// False if the line is not a row.
-static bool parse_row(const char *line, scree_series_row *row)
+/// False if the line is not a row of num_columns numbers.
+static bool parse_row(const char *line, int num_columns, scree_series_row *row)
 {
     int num_fields;
     const scree_field *fields = scree_series_fields(&num_fields);
-    for (int k = 0; k < num_fields; ++k)
+    for (int k = 0; k < num_columns; ++k)
     {
         char *end;
         const double value = strtod(line, &end);
-        if (end == line || *end != (k + 1 < num_fields ? ',' : '\n')) return false;
+        if (end == line || *end != (k + 1 < num_columns ? ',' : '\n')) return false;
         line = end + 1;
+        if (k >= num_fields) continue;
         char *place = (char *)row + fields[k].offset;
         const int64_t whole = (int64_t)(fields[k].type == SCREE_FIELD_INT64 ? value : 0);
         if (fields[k].type == SCREE_FIELD_INT64) memcpy(place, &whole, sizeof whole);
@@ -127,16 +169,19 @@ static char *read_all(int file, int64_t size)
 }
 
 /// Keeps the header and the rows up to last_step, drops the rest.
-static scree_status keep_rows(scree_series *series, int64_t size, int64_t last_step, scree_report *report)
+static scree_status keep_rows(scree_series *series, const scree_scene *scene, int64_t last_step, scree_report *report)
 {
-    char header[MAX_LINE];
-    const int header_length = format_header(header);
+    struct stat info;
+    if (fstat(series->file, &info) != 0) return fault(series, "read", report);
+    const int64_t size = (int64_t)info.st_size;
+    const int header_length = format_header(series, scene);
     char *text = read_all(series->file, size);
     if (text == NULL) return SCREE_OUT_OF_MEMORY;
-    if (strncmp(text, header, (size_t)header_length) != 0)
+    if (strncmp(text, series->line, (size_t)header_length) != 0)
     {
-        scree_report_add(report, "%s has other columns than this version writes; move it away to go on without it",
-                         series->path);
+        scree_report_add(
+            report, "%s has other columns than this version writes for this scene; move it away to go on without it",
+            series->path);
         free(text);
         return SCREE_READ_FAILED;
     }
@@ -144,7 +189,7 @@ static scree_status keep_rows(scree_series *series, int64_t size, int64_t last_s
     for (const char *end; (end = strchr(line, '\n')) != NULL; line = end + 1)
     {
         scree_series_row row;
-        if (!parse_row(line, &row) || row.step > last_step) break;
+        if (!parse_row(line, series->num_columns, &row) || row.step > last_step) break;
         note_row(series, &row);
     }
     series->size = line - text;
@@ -166,21 +211,21 @@ static scree_status lock(const scree_series *series, scree_report *report)
     return SCREE_INVALID_INPUT;
 }
 
-static scree_status open_rows(scree_series *series, int64_t last_step, scree_report *report)
+static scree_status open_rows(scree_series *series, const scree_scene *scene, int64_t last_step, scree_report *report)
 {
     struct stat info;
     series->file = open(series->path, O_RDWR | O_CREAT, 0666);
     if (series->file < 0 || fstat(series->file, &info) != 0) return fault(series, "opened", report);
     const scree_status status = lock(series, report);
     if (status != SCREE_OK) return status;
-    if (last_step >= 0 && info.st_size > 0) return keep_rows(series, (int64_t)info.st_size, last_step, report);
-    char header[MAX_LINE];
-    const int length = format_header(header);
+    if (last_step >= 0 && info.st_size > 0) return keep_rows(series, scene, last_step, report);
+    const int length = format_header(series, scene);
     if (ftruncate(series->file, 0) != 0) return fault(series, "emptied", report);
-    return append(series, header, length, report);
+    return append(series, series->line, length, report);
 }
 
-scree_status scree_series_open(scree_series **series, const char *path, int64_t last_step, scree_report *report)
+scree_status scree_series_open(scree_series **series, const char *path, const scree_scene *scene, int64_t last_step,
+                               scree_report *report)
 {
     *series = NULL;
     scree_series *s = calloc(1, sizeof *s);
@@ -189,7 +234,8 @@ scree_status scree_series_open(scree_series **series, const char *path, int64_t 
     s->last_step = -1;
     s->path = scree_path_join(path, "");
     const scree_locale locale = scree_locale_begin();
-    const scree_status status = s->path == NULL ? SCREE_OUT_OF_MEMORY : open_rows(s, last_step, report);
+    scree_status status = s->path == NULL ? SCREE_OUT_OF_MEMORY : reserve_line(s, scene);
+    if (status == SCREE_OK) status = open_rows(s, scene, last_step, report);
     scree_locale_end(locale);
     if (status == SCREE_OK) *series = s;
     else scree_series_close(s, NULL);
@@ -200,11 +246,10 @@ scree_status scree_series_write(scree_series *series, const scree_simulation *si
 {
     const scree_series_row row = scree_series_row_of(simulation);
     if (row.step <= series->last_step) return SCREE_OK;
-    char line[MAX_LINE];
     const scree_locale locale = scree_locale_begin();
-    const int length = format_row(&row, line);
+    const int length = format_row(series, &row, simulation);
     scree_locale_end(locale);
-    const scree_status status = append(series, line, length, report);
+    const scree_status status = append(series, series->line, length, report);
     if (status == SCREE_OK) note_row(series, &row);
     return status;
 }
@@ -217,6 +262,7 @@ scree_status scree_series_close(scree_series *series, scree_report *report)
     scree_status status = SCREE_OK;
     if (series->file >= 0 && close(series->file) != 0) status = fault(series, "closed", report);
     free(series->path);
+    free(series->line);
     free(series);
     return status;
 }

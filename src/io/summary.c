@@ -114,6 +114,30 @@ static void put_repose(FILE *out, const scree_simulation *simulation, bool is_he
     put_list(out, "height_map_height", repose.bin_height, is_measured ? repose.num_bins : 0);
 }
 
+/// Of each moving wall the work and, if it rotates, power and torque over its last whole revolution.
+static void put_wall_loads(FILE *out, const scree_simulation *simulation)
+{
+    put_key(out, "wall_loads");
+    fputc('{', out);
+    bool is_first = true;
+    for (int32_t w = 0; w < simulation->num_walls; ++w)
+    {
+        const scree_wall_def *wall = simulation->scene->walls + w;
+        if (wall->motion.kind == SCREE_MOTION_FIXED) continue;
+        const scree_wall_load load = scree_simulation_wall_load(simulation, w);
+        const double power = load.num_revolutions > 0 ? load.revolution_power : (double)NAN;
+        fprintf(out, "%s\n    \"%s\": {\"work\": ", is_first ? "" : ",", wall->name);
+        put_value(out, load.work);
+        fprintf(out, ", \"revolutions\": %" PRId64 ", \"power_of_last_revolution\": ", load.num_revolutions);
+        put_value(out, power);
+        fputs(", \"torque_of_last_revolution\": ", out);
+        put_value(out, power / wall->motion.angular_velocity);
+        fputc('}', out);
+        is_first = false;
+    }
+    fputs(is_first ? "},\n" : "\n  },\n", out);
+}
+
 static double total_mass(const scree_particles *particles)
 {
     double mass = 0;
@@ -158,6 +182,7 @@ static void put_everything(FILE *out, const scree_simulation *simulation, const 
     int num_fields;
     scree_series_fields(&num_fields);
     put_row_part(out, "counters", &row, pairs, num_fields);
+    put_wall_loads(out, simulation);
     put_repose(out, simulation, strcmp(result->outcome, "failed") != 0);
     char hash[17];
     snprintf(hash, sizeof hash, "%016" PRIx64, scree_simulation_hash(simulation));

@@ -1,0 +1,152 @@
+#include "dynamics/wall_loads.h"
+#include "dynamics/step_buffers.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#define PI 3.14159265358979323846
+
+scree_status scree_wall_loads_create(scree_wall_loads *loads, int64_t num_walls)
+{
+    const size_t num = (size_t)num_walls + 1;
+    *loads = (scree_wall_loads){.num_walls = num_walls};
+    loads->load = calloc(num, sizeof *loads->load);
+    loads->work = calloc(num, sizeof *loads->work);
+    loads->marked_work = calloc(num, sizeof *loads->marked_work);
+    loads->marked_step = calloc(num, sizeof *loads->marked_step);
+    loads->revolution_power = calloc(num, sizeof *loads->revolution_power);
+    const bool is_complete = loads->load != NULL && loads->work != NULL && loads->marked_work != NULL &&
+                             loads->marked_step != NULL && loads->revolution_power != NULL;
+    if (!is_complete) scree_wall_loads_destroy(loads);
+    return is_complete ? SCREE_OK : SCREE_OUT_OF_MEMORY;
+}
+
+void scree_wall_loads_destroy(scree_wall_loads *loads)
+{
+    free(loads->load);
+    free(loads->work);
+    free(loads->marked_work);
+    free(loads->marked_step);
+    free(loads->revolution_power);
+    *loads = (scree_wall_loads){0};
+}
+
+int64_t scree_wall_revolutions(const scree_wall_def *def, double time)
+{
+    const scree_motion_def *motion = &def->motion;
+    if (motion->kind != SCREE_MOTION_ROTATE || time <= motion->start) return 0;
+    const double seconds = fmin(time, motion->end) - motion->start;
+    // the step that ends a revolution up to rounding counts
+    return (int64_t)floor(fabs(motion->angular_velocity) * seconds / (2 * PI) * (1 + 1e-12));
+}
+
+static scree_vec3 unit_from(const double v[3])
+{
+    const double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    return scree_vec3_make((scree_real)(v[0] / length), (scree_real)(v[1] / length), (scree_real)(v[2] / length));
+}
+
+static scree_wall_axis axis_of(const scree_wall_def *def)
+{
+    const scree_motion_def *motion = &def->motion;
+    scree_wall_axis axis;
+    axis.is_rotating = motion->kind == SCREE_MOTION_ROTATE;
+    axis.direction = unit_from(axis.is_rotating ? motion->axis : motion->velocity);
+    axis.centre =
+        scree_vec3_make((scree_real)motion->centre[0], (scree_real)motion->centre[1], (scree_real)motion->centre[2]);
+    return axis;
+}
+
+/// How fast the wall moves along its motion now: [rad/s] or [m/s].
+static double rate_of(const scree_simulation *s, int32_t wall, const scree_wall_axis *axis)
+{
+    const scree_wall_state *state = s->walls + wall;
+    return (double)scree_vec3_dot(axis->is_rotating ? state->angular_velocity : state->velocity, axis->direction);
+}
+
+scree_status scree_update_wall_loads(scree_simulation *simulation)
+{
+    const scree_step_buffers *b = simulation->buffers;
+    const int32_t num_moving = b->num_moving_walls;
+    if (num_moving == 0) return SCREE_OK;
+    const int64_t num_blocks = (simulation->contacts.num_contacts + SCREE_WALL_LOAD_BLOCK - 1) / SCREE_WALL_LOAD_BLOCK;
+    scree_real *sums = malloc(((size_t)(num_blocks * num_moving) + 1) * sizeof *sums);
+    if (sums == NULL) return SCREE_OUT_OF_MEMORY;
+
+    scree_wall_load_args args;
+    args.contacts = simulation->contacts;
+    args.pose = b->pose;
+    args.moving = b->moving_wall;
+    args.axes = b->wall_axes;
+    args.num_moving = num_moving;
+    args.num_particles = (int32_t)simulation->particles.num_particles;
+    args.sums = sums;
+    scree_wall_load_launch(args, num_blocks);
+
+    for (int32_t w = 0; w < simulation->num_walls; ++w)
+    {
+        if (b->moving_wall[w] < 0) continue;
+        double load = 0;
+        for (int64_t k = 0; k < num_blocks; ++k) load += (double)sums[k * num_moving + b->moving_wall[w]];
+        simulation->wall_loads.load[w] = load;
+    }
+    free(sums);
+    return SCREE_OK;
+}
+
+/// Closes a revolution that this step has completed.
+static void mark_revolution(scree_simulation *s, int32_t w)
+{
+    const scree_wall_def *def = s->scene->walls + w;
+    scree_wall_loads *loads = &s->wall_loads;
+    const double time = (double)s->step * s->time_step;
+    const bool is_done = scree_wall_revolutions(def, time) > scree_wall_revolutions(def, time - s->time_step);
+    if (!is_done && time > def->motion.start) return;
+    if (is_done)
+        loads->revolution_power[w] =
+            (loads->work[w] - loads->marked_work[w]) / ((double)(s->step - loads->marked_step[w]) * s->time_step);
+    loads->marked_work[w] = loads->work[w];
+    loads->marked_step[w] = s->step;
+}
+
+scree_status scree_account_wall_loads(scree_simulation *simulation)
+{
+    const scree_step_buffers *b = simulation->buffers;
+    const scree_status status = scree_update_wall_loads(simulation);
+    for (int32_t w = 0; status == SCREE_OK && w < simulation->num_walls; ++w)
+    {
+        if (b->moving_wall[w] < 0) continue;
+        const double rate = rate_of(simulation, w, b->wall_axes + b->moving_wall[w]);
+        simulation->wall_loads.work[w] += simulation->wall_loads.load[w] * rate * simulation->time_step;
+        mark_revolution(simulation, w);
+    }
+    return status;
+}
+
+scree_status scree_wall_axes_create(scree_simulation *simulation)
+{
+    scree_step_buffers *b = simulation->buffers;
+    b->moving_wall = calloc((size_t)simulation->num_walls + 1, sizeof *b->moving_wall);
+    b->wall_axes = calloc((size_t)simulation->num_walls + 1, sizeof *b->wall_axes);
+    if (b->moving_wall == NULL || b->wall_axes == NULL) return SCREE_OUT_OF_MEMORY;
+    for (int32_t w = 0; w < simulation->num_walls; ++w)
+    {
+        const scree_wall_def *def = simulation->scene->walls + w;
+        b->moving_wall[w] = -1;
+        if (def->motion.kind == SCREE_MOTION_FIXED) continue;
+        b->wall_axes[b->num_moving_walls] = axis_of(def);
+        b->moving_wall[w] = b->num_moving_walls++;
+    }
+    return scree_wall_loads_create(&simulation->wall_loads, simulation->num_walls);
+}
+
+scree_wall_load scree_simulation_wall_load(const scree_simulation *simulation, int32_t wall)
+{
+    scree_wall_load load = {0};
+    if (wall < 0 || wall >= simulation->wall_loads.num_walls) return load;
+    load.load = simulation->wall_loads.load[wall];
+    load.work = simulation->wall_loads.work[wall];
+    load.num_revolutions = scree_wall_revolutions(simulation->scene->walls + wall, scree_simulation_time(simulation));
+    load.revolution_power = simulation->wall_loads.revolution_power[wall];
+    return load;
+}

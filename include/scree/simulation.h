@@ -82,7 +82,7 @@ extern "C"
         double residual;                  ///< [m] root mean square of the fit
         int64_t num_bins;
         double bin_x[256];      ///< [m] middles
-        double bin_height[256]; ///< [m] largest height of a vertex above the plate
+        double bin_height[256]; ///< [m] largest height of a vertex, or of the top of a sphere, above the plate
     } scree_repose;
 
     /// Angle of repose of the present state. SCREE_INVALID_INPUT if fewer than 4 bins hold particles.

@@ -19,8 +19,9 @@ typedef struct scree_contact_list
     int32_t *patch;          ///< 0, 1, ... within the pair
     scree_real *volume;      ///< [m^3]
     scree_real *indentation; ///< [m]
-    scree_real *radius;      ///< [m] of the contact across the normal, about the contact point
-    scree_vec3 *normal;      ///< [1] unit, from j towards i
+    scree_real *radius; ///< [m] of the contact across the normal, about the contact point; 0 for a sphere's contact,
+                        ///< which acts in a point
+    scree_vec3 *normal; ///< [1] unit, from j towards i
     scree_vec3 *area_vector; ///< [m^2] area of i's surface inside j, outward from i
     scree_vec3 *arm;         ///< [m] contact point minus position of i
 

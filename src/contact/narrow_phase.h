@@ -1,7 +1,10 @@
 /// \file narrow_phase.h
-/// Candidate pairs to contacts: separation test, overlap, compaction into the sorted contact list.
-/// A pair that was found apart by a gap is skipped until its bodies may have travelled that far; one that did not touch
-/// is asked along its last separating direction first. Neither changes a bit of the result.
+/// Candidate pairs to contacts: separation test, overlap, compaction into the sorted contact list. Which algorithm
+/// finds the contacts of a pair is read from a table over the kinds of its two shapes; pairs are worked on in one batch
+/// per entry of the table, and a batch that is empty costs no memory.
+///
+/// A pair of meshes that was found apart by a gap is skipped until its bodies may have travelled that far; one that did
+/// not touch is asked along its last separating direction first. Neither changes a bit of the result.
 #ifndef SCREE_NARROW_PHASE_H
 #define SCREE_NARROW_PHASE_H
 
@@ -24,6 +27,7 @@ typedef struct scree_narrow_phase_counts
     int64_t num_without_normal;
     int64_t num_fallbacks;
     scree_real worst_residual;
+    int64_t num_inside; ///< centres of spheres inside the solid of a mesh
     scree_real largest_indentation;
 } scree_narrow_phase_counts;
 

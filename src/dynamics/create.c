@@ -51,6 +51,11 @@ static scree_status check_names(const scree_scene *scene, scree_report *report)
     return is_complete && scree_report_num_faults(report) == before ? SCREE_OK : SCREE_INVALID_INPUT;
 }
 
+static bool is_true_sphere(const scree_shape_def *def)
+{
+    return def->source == SCREE_SHAPE_SPHERE && def->triangles == 0;
+}
+
 /// Mesh of a shape definition, in its source frame, before it is shifted and repeated.
 static scree_status make_one_mesh(scree_mesh *mesh, const scree_shape_def *def, const char *folder,
                                   scree_report *report)
@@ -109,6 +114,20 @@ static scree_status make_mesh(scree_mesh *mesh, const scree_shape_def *def, cons
     return status;
 }
 
+/// A true sphere needs no mesh, but it cannot be a wall.
+static scree_status make_sphere(scree_simulation *s, int32_t k, bool is_wall, scree_report *report)
+{
+    const scree_shape_def *def = s->scene->shapes + k;
+    scree_shape_create_sphere(s->particle_shapes + k, 0.5 * def->size[0]);
+    s->shape_views[k] = s->particle_shapes[k].view;
+    if (!is_wall) return SCREE_OK;
+    scree_report_add(report,
+                     "shape \"%s\" is a true sphere (triangles is 0), but a wall is made of it, and walls are meshes; "
+                     "set triangles of it, for instance 1280, or give the wall a shape of its own",
+                     def->name);
+    return SCREE_INVALID_INPUT;
+}
+
 /// Shapes in the frames they are used in: principal for particles, source for walls.
 static scree_status make_shapes(scree_simulation *s, const char *folder, scree_report *report)
 {
@@ -121,6 +140,12 @@ static scree_status make_shapes(scree_simulation *s, const char *folder, scree_r
             is_particle |= find_shape(scene, scene->particles[g].shape) == k;
         for (uint32_t w = 0; w < scene->num_walls; ++w) is_wall |= find_shape(scene, scene->walls[w].shape) == k;
         if (!is_particle && !is_wall) continue;
+        if (is_true_sphere(scene->shapes + k))
+        {
+            const scree_status made = make_sphere(s, k, is_wall, report);
+            if (made != SCREE_OK) worst = made;
+            continue;
+        }
 
         scree_mesh mesh = {0};
         scree_status status = make_mesh(&mesh, scene->shapes + k, folder, report);

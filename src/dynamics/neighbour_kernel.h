@@ -16,15 +16,19 @@ typedef struct scree_boxes_args
     scree_real *radii;              ///< (num_particles) out, with skin
 } scree_boxes_args;
 
-/// Box of the vertices of particle i, and its bounding sphere, both with skin.
+/// Box of the vertices of particle i, or of the sphere that it is, and its bounding sphere, both with skin.
 SCREE_FN void scree_boxes_at(scree_boxes_args a, int64_t i)
 {
     const scree_shape_view *shape = a.shapes + a.shape[i];
     const scree_pose pose = a.pose[i];
-    const scree_mat3 rotation = scree_mat3_from_quat(pose.orientation);
-    scree_box box = scree_box_empty();
-    for (int32_t v = 0; v < shape->num_vertices; ++v)
-        box = scree_box_with_point(box, scree_mat3_apply(rotation, shape->vertices[v]));
+    scree_box box = shape->box;
+    if (shape->kind == SCREE_KIND_MESH)
+    {
+        const scree_mat3 rotation = scree_mat3_from_quat(pose.orientation);
+        box = scree_box_empty();
+        for (int32_t v = 0; v < shape->num_vertices; ++v)
+            box = scree_box_with_point(box, scree_mat3_apply(rotation, shape->vertices[v]));
+    }
 
     // a few roundings of the rotation, the scaling and the sums
     const scree_real radius = shape->bounding_radius * pose.scale;
@@ -38,13 +42,15 @@ SCREE_FN void scree_boxes_at(scree_boxes_args a, int64_t i)
     a.radii[i] = radius + margin;
 }
 
-/// Upper bound of how far any point within `radius` of the position has moved from one pose to the other:
-/// |x1 - x0| + 2 sin(angle/2) radius.
-SCREE_FN scree_real scree_displacement(scree_pose from, scree_pose to, scree_real radius)
+/// Upper bound of how far the surface of a body has moved from one pose to the other. With R the bounding radius:
+/// |x1 - x0| + 2 sin(angle/2) R; a sphere that turns stays where it is.
+SCREE_FN scree_real scree_displacement(const scree_shape_view *shape, const scree_pose *from, const scree_pose *to)
 {
-    const scree_quat turn = scree_quat_multiply(to.orientation, scree_quat_conjugate(from.orientation));
+    const scree_real shift = scree_vec3_length(scree_vec3_sub(to->position, from->position));
+    if (shape->kind == SCREE_KIND_SPHERE) return shift;
+    const scree_quat turn = scree_quat_multiply(to->orientation, scree_quat_conjugate(from->orientation));
     const scree_real sine = scree_sqrt(turn.x * turn.x + turn.y * turn.y + turn.z * turn.z);
-    return scree_vec3_length(scree_vec3_sub(to.position, from.position)) + 2 * sine * radius;
+    return shift + 2 * sine * (shape->bounding_radius * to->scale);
 }
 
 #endif

@@ -14,8 +14,7 @@ static scree_real largest_displacement(const scree_simulation *s, int64_t begin,
 #pragma omp parallel for schedule(static) reduction(max : largest) if (end - begin >= 1024)
     for (int64_t i = begin; i < end; ++i)
     {
-        const scree_real radius = s->shape_views[b->shape[i]].bounding_radius * b->pose[i].scale;
-        const scree_real moved = scree_displacement(b->searched_pose[i], b->pose[i], radius);
+        const scree_real moved = scree_displacement(s->shape_views + b->shape[i], b->searched_pose + i, b->pose + i);
         if (!(moved <= largest)) largest = moved;
     }
     return largest;
@@ -39,8 +38,7 @@ static void add_travel(scree_simulation *s)
 #pragma omp parallel for schedule(static) if (num_bodies >= 1024)
     for (int64_t i = 0; i < num_bodies; ++i)
     {
-        const scree_real radius = s->shape_views[b->shape[i]].bounding_radius * b->pose[i].scale;
-        b->travel[i] += scree_displacement(b->last_pose[i], b->pose[i], radius);
+        b->travel[i] += scree_displacement(s->shape_views + b->shape[i], b->last_pose + i, b->pose + i);
         b->last_pose[i] = b->pose[i];
     }
 }

@@ -1,5 +1,6 @@
 /// \file plan.c
 /// The stages that a scene needs, why, and what they cost in memory.
+#include "contact/sphere_contact_kernel.h"
 #include "dynamics/step_buffers.h"
 
 #include <stdio.h>
@@ -12,14 +13,50 @@ static const size_t bytes_search =
 static const size_t bytes_contact =
     2 * (sizeof(scree_candidate_pair) + sizeof(int32_t) + 5 * sizeof(scree_real) + 7 * sizeof(scree_vec3) + 1) +
     sizeof(int64_t) + 1;
-static const size_t bytes_pair = sizeof(scree_candidate_pair) + 2 * sizeof(int32_t) + 2 * sizeof(int64_t) +
-                                 sizeof(scree_overlap_result) + sizeof(int32_t);
+static const size_t bytes_pair = sizeof(scree_candidate_pair) + 4 * sizeof(int32_t) + 2 * sizeof(int64_t);
+static const size_t bytes_mesh_pair =
+    sizeof(scree_overlap_result) + sizeof(int32_t) + sizeof(scree_vec3) + 2 * sizeof(scree_real);
+static const size_t bytes_sphere_mesh_pair = 3 * sizeof(scree_sphere_contact) + 1;
 
 static void print_stage(FILE *out, const char *stage, const char *why, size_t bytes, const char *per)
 {
     fprintf(out, "  %-22s %-62s", stage, why);
     if (bytes > 0) fprintf(out, " %4zu B/%s", bytes, per);
     fputc('\n', out);
+}
+
+/// How contacts are found, by the kinds of shapes that can meet. Returns the bytes of a pair that takes the most.
+static size_t print_narrow_phase(const scree_simulation *s, FILE *out)
+{
+    bool has_spheres = false, has_meshes = false;
+    for (int64_t i = 0; i < s->particles.num_particles; ++i)
+    {
+        const bool is_sphere = s->shape_views[s->particles.shape[i]].kind == SCREE_KIND_SPHERE;
+        has_spheres |= is_sphere;
+        has_meshes |= !is_sphere;
+    }
+    const char *stage = "narrow phase";
+    size_t largest = 0;
+    if (has_meshes)
+    {
+        char text[96];
+        snprintf(text, sizeof text, "polyhedra: exact overlap, %s scheme, a contact per pair",
+                 s->scene->solver.overlap_scheme);
+        print_stage(out, stage, text, bytes_mesh_pair, "pair");
+        stage = "";
+        largest = bytes_mesh_pair;
+    }
+    if (has_spheres && (has_meshes || s->num_walls > 0))
+    {
+        print_stage(out, stage, "spheres on meshes: faces, edges and vertices that are nearest", bytes_sphere_mesh_pair,
+                    "pair");
+        stage = "";
+        largest = largest > bytes_sphere_mesh_pair ? largest : bytes_sphere_mesh_pair;
+    }
+    if (has_spheres) print_stage(out, stage, "spheres with each other: closed form", 0, "");
+    print_stage(out, "contacts", "sorted by pair, with those of the step before for the history", bytes_contact,
+                "contact");
+    return largest;
 }
 
 void scree_simulation_print_plan(const scree_simulation *simulation, void *stream)
@@ -44,10 +81,8 @@ void scree_simulation_print_plan(const scree_simulation *simulation, void *strea
     snprintf(text, sizeof text, "LBVH over boxes with a skin of %.3g m; reused until it is used up",
              (double)s->buffers->skin);
     print_stage(out, "neighbours", text, bytes_search, "particle");
-    print_stage(out, "", "candidate pairs with their overlaps and rows", bytes_pair, "pair");
-    snprintf(text, sizeof text, "polyhedra: exact overlap, %s scheme, a contact per pair",
-             s->scene->solver.overlap_scheme);
-    print_stage(out, "narrow phase", text, bytes_contact, "contact");
+    print_stage(out, "", "candidate pairs and their rows", bytes_pair, "pair");
+    const size_t largest_pair = print_narrow_phase(s, out);
     snprintf(text, sizeof text, "volumetric Hertz-Mindlin%s%s", has_damping ? ", damping" : "",
              has_spring ? ", tangential spring with history" : ", no tangential spring");
     print_stage(out, "forces", text, 0, "");
@@ -56,7 +91,7 @@ void scree_simulation_print_plan(const scree_simulation *simulation, void *strea
     print_stage(out, "work", "energy balance and critical time step", 0, "");
     const double particles =
         (double)s->particles.num_particles * (double)(bytes_moving + bytes_constant + bytes_search);
-    const double pairs = (double)s->broad_phase.num_pairs * (double)(bytes_pair + bytes_contact);
+    const double pairs = (double)s->broad_phase.num_pairs * (double)(bytes_pair + largest_pair + bytes_contact);
     fprintf(out, "  memory now about %.3g MB for %lld candidate pairs, all of them as contacts\n",
             (particles + pairs) / 1e6, (long long)s->broad_phase.num_pairs);
 }

@@ -1,9 +1,19 @@
 /// \file repose.c
-/// Angle of repose (Bilock 2020, 6.3): the largest height of a vertex above the plate in each bin along x, fitted with
-/// the sigmoid h(x) = c/(1 + exp(a (x - b))); the angle is that of its steepest slope, |a| c/4, at x = b.
+/// Angle of repose (Bilock 2020, 6.3): the largest height of a vertex, or of the top of a sphere, above the plate in
+/// each bin along x, fitted with the sigmoid h(x) = c/(1 + exp(a (x - b))); the angle is that of its steepest slope,
+/// |a| c/4, at x = b.
 #include "dynamics/step_buffers.h"
 
 #include <math.h>
+
+/// Raises the height of the bin that x is in.
+static void raise_bin(const scree_repose_def *def, scree_vec3 x, scree_repose *repose)
+{
+    const double bin = floor(((double)x.x - def->from) / ((def->to - def->from) / (double)def->bins));
+    if (!(bin >= 0 && bin < (double)def->bins)) return;
+    double *height = repose->bin_height + (int64_t)bin;
+    *height = fmax(*height, (double)x.z - def->base);
+}
 
 /// Heights per bin; bins without particles get 0. Returns the number of bins that hold some.
 static int64_t measure_heights(const scree_simulation *s, scree_repose *repose)
@@ -22,15 +32,14 @@ static int64_t measure_heights(const scree_simulation *s, scree_repose *repose)
         if ((double)s->particles.position[i].z > def->top) continue;
         const scree_shape_view *shape = s->shape_views + s->particles.shape[i];
         const scree_mat3 rotation = scree_mat3_from_quat(s->particles.orientation[i]);
+        const scree_vec3 top = scree_vec3_make(0, 0, shape->bounding_radius);
+        if (shape->kind == SCREE_KIND_SPHERE)
+            raise_bin(def, scree_vec3_add_scaled(s->particles.position[i], top, s->particles.scale[i]), repose);
         for (int32_t v = 0; v < shape->num_vertices; ++v)
-        {
-            const scree_vec3 x = scree_vec3_add_scaled(
-                s->particles.position[i], scree_mat3_apply(rotation, shape->vertices[v]), s->particles.scale[i]);
-            const double bin = floor(((double)x.x - def->from) / width);
-            if (!(bin >= 0 && bin < (double)def->bins)) continue;
-            double *height = repose->bin_height + (int64_t)bin;
-            *height = fmax(*height, (double)x.z - def->base);
-        }
+            raise_bin(def,
+                      scree_vec3_add_scaled(s->particles.position[i], scree_mat3_apply(rotation, shape->vertices[v]),
+                                            s->particles.scale[i]),
+                      repose);
     }
     for (int64_t k = 0; k < def->bins; ++k) num_filled += repose->bin_height[k] > 0;
     return num_filled;

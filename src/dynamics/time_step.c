@@ -2,6 +2,10 @@
 
 #include <math.h>
 
+/// Deepest contact of a sphere with a plane to expect, over its radius. At this depth half of the critical step is
+/// about a quarter of the Rayleigh time.
+#define SPHERE_INDENTATION 0.02
+
 double scree_time_step_critical(const scree_simulation *simulation)
 {
     const scree_particles *p = &simulation->particles;
@@ -9,7 +13,8 @@ double scree_time_step_critical(const scree_simulation *simulation)
     for (int64_t i = 0; i < p->num_particles; ++i)
     {
         const scree_shape *shape = simulation->particle_shapes + p->shape[i];
-        const double contact_radius = 0.5 * shape->properties.bounding_radius * (double)p->scale[i];
+        const double share = shape->view.kind == SCREE_KIND_SPHERE ? sqrt(SPHERE_INDENTATION) : 0.5;
+        const double contact_radius = share * shape->properties.bounding_radius * (double)p->scale[i];
         double stiffness = 0;
         for (int32_t m = 0; m < simulation->num_materials; ++m)
         {

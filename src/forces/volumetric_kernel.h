@@ -10,7 +10,8 @@
 ///     M_n += -k_t a^2/2 w_n dt;  M_n - 2 g sqrt(m* k_t) a^2/2 w_n is capped at 2/3 a mu F_n     Marshall (2009),
 ///     twisting M_t  = -2 g sqrt(m* k_n) a^2/4 w_t, capped at a/4 F_n (beyond it part of the disc would pull)
 ///
-/// Without them a body that lies flat on one contact spins on for ever: at the contact point it does not slide.
+/// Contacts of true spheres have none: a = 0. Without them a body that lies flat on one contact spins on for ever: at
+/// the contact point it does not slide.
 ///
 /// With c = 4/(3 sqrt(pi)) the normal force is Hertz's for spheres, where V -> pi R* d^2. V d and V/d are continuous
 /// while a contact forms and ends; the law is not the gradient of an energy.
@@ -151,7 +152,7 @@ SCREE_FN void scree_volumetric_force(const scree_force_law *law, const scree_con
     f->moment = scree_vec3_zero();
     f->torsion = 0;
     f->is_twisting = false;
-    if (law->has_moments) scree_contact_moment(law, k, pressing, f);
+    if (law->has_moments && k->radius > 0) scree_contact_moment(law, k, pressing, f);
 }
 
 #endif

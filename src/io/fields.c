@@ -120,6 +120,8 @@ const scree_field scree_frame_particle = {"particle", "1", "id of the particle",
 const scree_field scree_frame_group = {"group",           "1", "index of the particle group in the scene",
                                        SCREE_FIELD_INT32, 1,   0};
 const scree_field scree_frame_speed = {"speed", "m/s", "speed of the particle's centroid", SCREE_FIELD_FLOAT, 1, 0};
+const scree_field scree_frame_radius = {"radius", "m", "radius of the sphere", SCREE_FIELD_FLOAT, 1, 0};
+const scree_field scree_frame_velocity = {"velocity", "m/s", "velocity of the centre", SCREE_FIELD_FLOAT, 3, 0};
 const scree_field scree_frame_wall = {"wall", "1", "index of the wall in the scene", SCREE_FIELD_INT32, 1, 0};
 const scree_field scree_frame_i = {"i", "1", "id of the first particle", SCREE_FIELD_INT32, 1, 0};
 const scree_field scree_frame_j = {

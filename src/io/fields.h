@@ -47,8 +47,9 @@ const scree_field *scree_particle_fields(int *num_fields);
 int scree_num_moving_particle_fields(void);
 const scree_field *scree_contact_fields(int *num_fields);
 const scree_field *scree_wall_fields(int *num_fields);
-/// Arrays of frames.vtkhdf, walls.vtkhdf and contacts.vtkhdf; offsets unused.
+/// Arrays of frames.vtkhdf, spheres.vtkhdf, walls.vtkhdf and contacts.vtkhdf; offsets unused.
 extern const scree_field scree_frame_particle, scree_frame_group, scree_frame_speed;
+extern const scree_field scree_frame_radius, scree_frame_velocity;
 extern const scree_field scree_frame_wall;
 extern const scree_field scree_frame_i, scree_frame_j, scree_frame_normal_force, scree_frame_tangential_force,
     scree_frame_indentation, scree_frame_volume, scree_frame_slipping;

@@ -1,6 +1,7 @@
 /// \file frames_vtkhdf.c
-/// Pictures of the state for ParaView and VTK: surfaces of the particles (frames.vtkhdf) and of the walls
-/// (walls.vtkhdf), contacts as lines from centre to centre through the contact point (contacts.vtkhdf).
+/// Pictures of the state for ParaView and VTK: surfaces of the polyhedra (frames.vtkhdf) and of the walls
+/// (walls.vtkhdf), true spheres as points with a radius (spheres.vtkhdf), contacts as lines from centre to centre
+/// through the contact point (contacts.vtkhdf). There is no file of what a scene has none of.
 ///
 /// Particles keep their connectivity, so it is written once and each frame adds points alone. Walls are written anew
 /// only in frames where one of them has moved or gone.
@@ -21,6 +22,11 @@ enum
     PARTICLE_ID = SCREE_VTKHDF_ARRAYS,
     PARTICLE_GROUP,
     PARTICLE_SPEED,
+    SPHERE_ID = SCREE_VTKHDF_ARRAYS,
+    SPHERE_GROUP,
+    SPHERE_RADIUS,
+    SPHERE_SPEED,
+    SPHERE_VELOCITY,
     WALL_ID = SCREE_VTKHDF_ARRAYS,
     CONTACT_I = SCREE_VTKHDF_ARRAYS,
     CONTACT_J,
@@ -33,11 +39,14 @@ enum
 
 struct scree_frames
 {
-    scree_vtkhdf_file *particles, *walls, *contacts; ///< walls: NULL if there are none
-    int64_t *first_vertex;                           ///< (num_particles + 1)
-    scree_vtkhdf_step particle_step;                 ///< that all frames share, but for time and points
-    scree_vtkhdf_step wall_step;                     ///< of the walls as they were last written
-    scree_wall_state *written_walls;                 ///< (num_walls) as they were then
+    scree_vtkhdf_file *particles, *spheres, *walls, *contacts; ///< NULL if there are none, contacts apart
+    int64_t *first_vertex;                                     ///< (num_particles + 1)
+    int64_t num_spheres;
+    int32_t *sphere_ids;             ///< (num_spheres) ids of the particles that are spheres
+    scree_vtkhdf_step particle_step; ///< that all frames share, but for time and points
+    scree_vtkhdf_step sphere_step;   ///< likewise
+    scree_vtkhdf_step wall_step;     ///< of the walls as they were last written
+    scree_wall_state *written_walls; ///< (num_walls) as they were then
     bool has_written_walls;
     void *block; ///< (BLOCK_ITEMS, or what one body needs) of 3 floats
 };
@@ -192,6 +201,91 @@ static scree_status write_particles(scree_frames *frames, const scree_simulation
     }
     if (status == SCREE_OK) status = scree_vtkhdf_add_step(file, step, report);
     if (status == SCREE_OK && !is_first) scree_vtkhdf_add_points(file, first_vertex[particles->num_particles]);
+    return status;
+}
+
+// ---- spheres
+
+/// One item of a column for the spheres first .. first + num - 1, to the block.
+static void fill_sphere_column(const scree_frames *frames, const scree_simulation *simulation, int column,
+                               scree_vtkhdf_rows rows)
+{
+    const scree_particles *particles = &simulation->particles;
+    float *numbers = frames->block;
+    int32_t *ids = frames->block;
+    for (int64_t k = 0; k < rows.num; ++k)
+    {
+        const int32_t i = frames->sphere_ids[rows.first + k];
+        const bool is_point = column == SCREE_VTKHDF_POINT_COORDINATES;
+        const scree_vec3 v = is_point ? particles->position[i] : particles->velocity[i];
+        if (column == SPHERE_ID) ids[k] = i;
+        else if (column == SPHERE_GROUP) ids[k] = particles->group[i];
+        else if (column == SCREE_VTKHDF_CONNECTIVITY || column == SCREE_VTKHDF_OFFSETS)
+            ids[k] = (int32_t)(rows.first + k);
+        else if (column == SPHERE_RADIUS)
+            numbers[k] = (float)(particle_shape(simulation, i)->bounding_radius * particles->scale[i]);
+        else if (column == SPHERE_SPEED) numbers[k] = (float)scree_vec3_length(v);
+        else
+        {
+            numbers[3 * k + 0] = (float)v.x;
+            numbers[3 * k + 1] = (float)v.y;
+            numbers[3 * k + 2] = (float)v.z;
+        }
+    }
+}
+
+/// A column of all spheres to the rows from `row` on.
+static scree_status write_sphere_column(scree_frames *frames, const scree_simulation *simulation, int column,
+                                        int64_t row, scree_report *report)
+{
+    scree_status status = SCREE_OK;
+    for (int64_t first = 0; first < frames->num_spheres && status == SCREE_OK; first += BLOCK_ITEMS)
+    {
+        const int64_t left = frames->num_spheres - first, num = left < BLOCK_ITEMS ? left : BLOCK_ITEMS;
+        fill_sphere_column(frames, simulation, column, (scree_vtkhdf_rows){first, num});
+        status =
+            scree_vtkhdf_write(frames->spheres, column, (scree_vtkhdf_rows){row + first, num}, frames->block, report);
+    }
+    return status;
+}
+
+/// All that frames share, once: each sphere a vertex, ids, groups, radii.
+static scree_status write_sphere_topology(scree_frames *frames, const scree_simulation *simulation,
+                                          scree_report *report)
+{
+    scree_vtkhdf_file *file = frames->spheres;
+    const int64_t id_row = scree_vtkhdf_num_rows(file, SCREE_VTKHDF_IDS), num_spheres = frames->num_spheres;
+    const int64_t offset_row =
+        scree_vtkhdf_num_rows(file, SCREE_VTKHDF_CELLS) + scree_vtkhdf_num_rows(file, SCREE_VTKHDF_PARTS);
+    const int32_t end = (int32_t)num_spheres;
+    scree_status status = write_sphere_column(frames, simulation, SCREE_VTKHDF_CONNECTIVITY, id_row, report);
+    if (status == SCREE_OK) status = write_sphere_column(frames, simulation, SCREE_VTKHDF_OFFSETS, offset_row, report);
+    if (status == SCREE_OK)
+        status = scree_vtkhdf_write(file, SCREE_VTKHDF_OFFSETS, (scree_vtkhdf_rows){offset_row + num_spheres, 1}, &end,
+                                    report);
+    for (int column = SPHERE_ID; column <= SPHERE_RADIUS && status == SCREE_OK; ++column)
+        status = write_sphere_column(frames, simulation, column, 0, report);
+    if (status != SCREE_OK) return status;
+    int64_t num[SCREE_VTKHDF_NUM_EXTENTS] = {0};
+    num[SCREE_VTKHDF_POINTS] = num[SCREE_VTKHDF_CELLS] = num[SCREE_VTKHDF_IDS] = num_spheres;
+    return scree_vtkhdf_add_part(file, num, &frames->sphere_step, report);
+}
+
+static scree_status write_spheres(scree_frames *frames, const scree_simulation *simulation, scree_report *report)
+{
+    static const int columns[] = {SCREE_VTKHDF_POINT_COORDINATES, SPHERE_SPEED, SPHERE_VELOCITY};
+    scree_vtkhdf_file *file = frames->spheres;
+    scree_vtkhdf_step *step = &frames->sphere_step;
+    scree_status status = SCREE_OK;
+    if (scree_vtkhdf_num_rows(file, SCREE_VTKHDF_POINTS) == 0)
+        status = write_sphere_topology(frames, simulation, report);
+    const bool is_first = scree_vtkhdf_num_steps(file) == 0;
+    step->time = scree_simulation_time(simulation);
+    step->point_offset = is_first ? 0 : scree_vtkhdf_num_rows(file, SCREE_VTKHDF_POINTS);
+    for (int k = 0; k < 3 && status == SCREE_OK; ++k)
+        status = write_sphere_column(frames, simulation, columns[k], step->point_offset, report);
+    if (status == SCREE_OK) status = scree_vtkhdf_add_step(file, step, report);
+    if (status == SCREE_OK && !is_first) scree_vtkhdf_add_points(file, frames->num_spheres);
     return status;
 }
 
@@ -403,12 +497,16 @@ static scree_status measure(scree_frames *frames, const scree_simulation *simula
     *num_triangles = 0;
     frames->first_vertex = malloc((size_t)(num_particles + 1) * sizeof *frames->first_vertex);
     frames->written_walls = malloc((size_t)(simulation->num_walls + 1) * sizeof *frames->written_walls);
-    if (frames->first_vertex == NULL || frames->written_walls == NULL) return SCREE_OUT_OF_MEMORY;
+    frames->sphere_ids = malloc((size_t)(num_particles + 1) * sizeof *frames->sphere_ids);
+    if (frames->first_vertex == NULL || frames->written_walls == NULL || frames->sphere_ids == NULL)
+        return SCREE_OUT_OF_MEMORY;
     frames->first_vertex[0] = 0;
     for (int64_t i = 0; i < num_particles; ++i)
     {
         frames->first_vertex[i + 1] = frames->first_vertex[i] + particle_shape(simulation, i)->num_vertices;
         *num_triangles += particle_shape(simulation, i)->num_triangles;
+        if (particle_shape(simulation, i)->kind == SCREE_KIND_SPHERE)
+            frames->sphere_ids[frames->num_spheres++] = (int32_t)i;
     }
     for (int32_t k = 0; k < 2 * simulation->num_shapes; ++k)
     {
@@ -424,9 +522,20 @@ static scree_status measure(scree_frames *frames, const scree_simulation *simula
     return SCREE_TOO_MANY;
 }
 
-/// The three definitions, in the order particles, walls, contacts.
+/// The files, in the order of their definitions.
+enum
+{
+    PARTICLES_FILE,
+    SPHERES_FILE,
+    WALLS_FILE,
+    CONTACTS_FILE,
+    NUM_FILES
+};
+
+static const char *const file_names[NUM_FILES] = {"frames.vtkhdf", "spheres.vtkhdf", "walls.vtkhdf", "contacts.vtkhdf"};
+
 static void define(const scree_frames *frames, const scree_simulation *simulation, int64_t num_triangles,
-                   scree_vtkhdf_def defs[3])
+                   scree_vtkhdf_def defs[NUM_FILES])
 {
     const int64_t num_frames = expected_frames(simulation), num_particles = simulation->particles.num_particles;
     const int64_t num_points = frames->first_vertex[num_particles];
@@ -439,6 +548,15 @@ static void define(const scree_frames *frames, const scree_simulation *simulatio
          {&scree_frame_group, SCREE_VTKHDF_FIXED_POINTS},
          {&scree_frame_speed, SCREE_VTKHDF_POINTS}},
         {num_frames, 3, num_frames * num_points, num_triangles + 1, 3 * num_triangles, num_points}};
+    const scree_vtkhdf_def spheres = {SCREE_VTKHDF_VERTICES,
+                                      5,
+                                      {{&scree_frame_particle, SCREE_VTKHDF_FIXED_POINTS},
+                                       {&scree_frame_group, SCREE_VTKHDF_FIXED_POINTS},
+                                       {&scree_frame_radius, SCREE_VTKHDF_FIXED_POINTS},
+                                       {&scree_frame_speed, SCREE_VTKHDF_POINTS},
+                                       {&scree_frame_velocity, SCREE_VTKHDF_POINTS}},
+                                      {num_frames, 3, num_frames * frames->num_spheres, frames->num_spheres + 1,
+                                       frames->num_spheres, frames->num_spheres}};
     const scree_vtkhdf_def walls = {SCREE_VTKHDF_POLYGONS,
                                     1,
                                     {{&scree_frame_wall, SCREE_VTKHDF_POINTS}},
@@ -454,25 +572,28 @@ static void define(const scree_frames *frames, const scree_simulation *simulatio
          {&scree_frame_volume, SCREE_VTKHDF_CELLS},
          {&scree_frame_slipping, SCREE_VTKHDF_CELLS}},
         {num_frames, num_frames + 2, 12 * num_particles, 4 * num_particles, 12 * num_particles, 0}};
-    defs[0] = particles;
-    defs[1] = walls;
-    defs[2] = contacts;
+    defs[PARTICLES_FILE] = particles;
+    defs[SPHERES_FILE] = spheres;
+    defs[WALLS_FILE] = walls;
+    defs[CONTACTS_FILE] = contacts;
 }
 
 /// Opens the files, going on with what they hold up to last_time if that is not negative.
 static scree_status open_all(scree_frames *frames, const char *folder, const scree_simulation *simulation,
                              double last_time, scree_report *report)
 {
-    static const char *const names[3] = {"frames.vtkhdf", "walls.vtkhdf", "contacts.vtkhdf"};
-    scree_vtkhdf_file **const files[3] = {&frames->particles, &frames->walls, &frames->contacts};
-    scree_vtkhdf_def defs[3];
+    scree_vtkhdf_file **const files[NUM_FILES] = {&frames->particles, &frames->spheres, &frames->walls,
+                                                  &frames->contacts};
+    scree_vtkhdf_def defs[NUM_FILES];
     int64_t num_triangles;
     scree_status status = measure(frames, simulation, &num_triangles, report);
     if (status == SCREE_OK) define(frames, simulation, num_triangles, defs);
-    for (int k = 0; k < 3 && status == SCREE_OK; ++k)
+    const bool is_empty[NUM_FILES] = {num_triangles == 0 && frames->num_spheres > 0, frames->num_spheres == 0,
+                                      simulation->num_walls == 0, false};
+    for (int k = 0; k < NUM_FILES && status == SCREE_OK; ++k)
     {
-        if (k == 1 && simulation->num_walls == 0) continue;
-        char *path = scree_path_join(folder, names[k]);
+        if (is_empty[k]) continue;
+        char *path = scree_path_join(folder, file_names[k]);
         if (path == NULL) status = SCREE_OUT_OF_MEMORY;
         else if (last_time >= 0) status = scree_vtkhdf_reopen(files[k], path, defs + k, last_time, report);
         else status = scree_vtkhdf_create(files[k], path, defs + k, report);
@@ -494,7 +615,10 @@ scree_status scree_frames_open(scree_frames **frames, const char *folder, const 
         scree_frames_close(f, NULL);
         return status;
     }
-    if (scree_vtkhdf_num_steps(f->particles) > 0) f->particle_step = scree_vtkhdf_last_step(f->particles);
+    if (f->particles != NULL && scree_vtkhdf_num_steps(f->particles) > 0)
+        f->particle_step = scree_vtkhdf_last_step(f->particles);
+    if (f->spheres != NULL && scree_vtkhdf_num_steps(f->spheres) > 0)
+        f->sphere_step = scree_vtkhdf_last_step(f->spheres);
     *frames = f;
     return SCREE_OK;
 }
@@ -507,7 +631,9 @@ scree_status scree_frames_write(scree_frames *frames, const scree_simulation *si
         status = write_walls(frames, simulation, report);
     if (status == SCREE_OK && scree_vtkhdf_last_time(frames->contacts) < time)
         status = write_contacts(frames, simulation, report);
-    if (status == SCREE_OK && scree_vtkhdf_last_time(frames->particles) < time)
+    if (status == SCREE_OK && frames->spheres != NULL && scree_vtkhdf_last_time(frames->spheres) < time)
+        status = write_spheres(frames, simulation, report);
+    if (status == SCREE_OK && frames->particles != NULL && scree_vtkhdf_last_time(frames->particles) < time)
         status = write_particles(frames, simulation, report);
     return status;
 }
@@ -515,14 +641,15 @@ scree_status scree_frames_write(scree_frames *frames, const scree_simulation *si
 scree_status scree_frames_close(scree_frames *frames, scree_report *report)
 {
     if (frames == NULL) return SCREE_OK;
-    scree_vtkhdf_file *const files[3] = {frames->particles, frames->walls, frames->contacts};
+    scree_vtkhdf_file *const files[NUM_FILES] = {frames->particles, frames->spheres, frames->walls, frames->contacts};
     scree_status worst = SCREE_OK;
-    for (int k = 0; k < 3; ++k)
+    for (int k = 0; k < NUM_FILES; ++k)
     {
         const scree_status status = scree_vtkhdf_close(files[k], report);
         if (worst == SCREE_OK) worst = status;
     }
     free(frames->first_vertex);
+    free(frames->sphere_ids);
     free(frames->written_walls);
     free(frames->block);
     free(frames);

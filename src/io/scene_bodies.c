@@ -61,6 +61,23 @@ static void check_profile(scree_scene_reader *reader, const scree_yaml_node *sha
         scree_scene_fault(reader, profile, "profile of %s has no area; its corners must not lie on one line", of);
 }
 
+/// Without triangles, a true sphere: no mesh that could be shifted and repeated.
+static void check_sphere(scree_scene_reader *reader, const scree_yaml_node *shape, const char *of)
+{
+    double triangles, copies;
+    if (!scree_rules_number(shape, "triangles", &triangles)) return;
+    if (triangles > 0 && triangles < 4)
+        scree_scene_fault(reader, scree_rules_place(shape, "triangles"),
+                          "triangles of %s is %g; it must be 0 for a true sphere, or from 4 on for a mesh", of,
+                          triangles);
+    if (triangles > 0) return;
+    if (scree_rules_number(shape, "copies", &copies) && copies > 1)
+        scree_scene_fault(reader, scree_rules_place(shape, "copies"),
+                          "copies of %s is %g, but a true sphere (triangles: 0) cannot be repeated; give it triangles",
+                          of, copies);
+    warn_unused_key(reader, shape, "offset", of, "a true sphere is centred");
+}
+
 static void check_shape(scree_scene_reader *reader, const scree_yaml_node *shape, const char *of)
 {
     const char *source = scree_rules_text(shape, "source"), *file = scree_rules_text(shape, "file");
@@ -75,9 +92,10 @@ static void check_shape(scree_scene_reader *reader, const scree_yaml_node *shape
 
     double triangles;
     const bool has_triangles = scree_rules_number(shape, "triangles", &triangles);
-    if ((is_rock || is_sphere) && has_triangles && triangles < 4)
+    if (is_rock && has_triangles && triangles < 4)
         scree_scene_fault(reader, scree_rules_place(shape, "triangles"),
-                          "triangles of %s is %g; a %s needs a number from 4 on, like 40", of, triangles, source);
+                          "triangles of %s is %g; a rock needs a number from 4 on, like 40", of, triangles);
+    if (is_sphere) check_sphere(reader, shape, of);
     if (is_file && has_triangles && triangles > 0 && triangles < 4)
         scree_scene_fault(reader, scree_rules_place(shape, "triangles"),
                           "triangles of %s is %g; it must be 0 for the file as it is, or from 4 on", of, triangles);
@@ -252,6 +270,23 @@ static void check_motion(scree_scene_reader *reader, const scree_yaml_node *wall
     for (int k = 0; !is_rotating && k < 3; ++k) warn_unused_key(reader, motion, of_rotation[k], of, why);
 }
 
+/// A true sphere cannot be a wall: walls are meshes.
+static void check_wall_shape(scree_scene_reader *reader, const scree_yaml_node *wall, int64_t shape, const char *of)
+{
+    if (shape < 0) return;
+    const scree_yaml_node *node = scree_yaml_find(reader->root, "shapes")->items[shape];
+    const char *source = scree_rules_text(node, "source"), *name = scree_rules_text(node, "name");
+    double triangles;
+    if (source == NULL || strcmp(source, "sphere") != 0 || !scree_rules_number(node, "triangles", &triangles) ||
+        triangles > 0)
+        return;
+    scree_scene_fault(
+        reader, scree_rules_place(wall, "shape"),
+        "shape of %s is \"%.255s\", a true sphere (triangles: 0), but walls are meshes; give it a shape of "
+        "its own, for instance source: sphere with triangles: 1280",
+        of, name);
+}
+
 void scree_rules_check_walls(scree_scene_reader *reader, scree_rules_scene *scene)
 {
     const scree_yaml_node *walls = scree_yaml_find(reader->root, "walls");
@@ -268,7 +303,8 @@ void scree_rules_check_walls(scree_scene_reader *reader, scree_rules_scene *scen
         char of[48], label[80];
         snprintf(of, sizeof of, "walls.%lld", (long long)k);
         snprintf(label, sizeof label, "shape of %s", of);
-        scree_rules_resolve(reader, scene->shapes, scree_yaml_find(wall, "shape"), label);
+        const int64_t shape = scree_rules_resolve(reader, scene->shapes, scree_yaml_find(wall, "shape"), label);
+        check_wall_shape(reader, wall, shape, of);
         snprintf(label, sizeof label, "material of %s", of);
         scene->wall_material[k] =
             scree_rules_resolve(reader, scene->materials, scree_yaml_find(wall, "material"), label);

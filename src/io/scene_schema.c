@@ -181,7 +181,7 @@ static const cyaml_schema_field_t shape_fields[] = {TEXT(scree_shape_def, name),
                                                     CYAML_FIELD_END};
 static const scree_scene_key shape_keys[] = {
     {.name = "name", .rule = SCREE_TEXT_NAME, .meaning = "what particles and walls call it"},
-    {.name = "source", .meaning = "where the mesh comes from: a file, or made by rule"},
+    {.name = "source", .meaning = "where the shape comes from: a file, or made by rule"},
     {.name = "file",
      .default_text = "\"\"",
      .rule = SCREE_TEXT_PATH,
@@ -200,7 +200,7 @@ static const scree_scene_key shape_keys[] = {
      .min = 0,
      .max = 1e6,
      .meaning = "wanted number of triangles of a sphere or a rock, at least 4; a file with more is simplified to it; "
-                "0: the file as it is"},
+                "0: the file as it is, or a true sphere, which has no mesh and cannot be a wall"},
     {.name = "seed",
      .unit = "1",
      .default_text = "0",
@@ -233,8 +233,8 @@ static const scree_scene_key shape_keys[] = {
                 "They must not touch each other"},
 };
 static const scree_scene_section shape_section = {
-    "shapes[]", "Closed triangle meshes, shared by all particles and walls that name them.", shape_fields, shape_keys,
-    COUNT(shape_keys)};
+    "shapes[]", "Closed triangle meshes and true spheres, shared by all particles and walls that name them.",
+    shape_fields, shape_keys, COUNT(shape_keys)};
 
 // ---------------------------------------------------------------------------------------------------------- particles
 

@@ -78,7 +78,7 @@ struct scree_vtkhdf_file
 
 // ---- datasets
 
-static int topology_index(const scree_vtkhdf_file *file) { return file->def.topology == SCREE_VTKHDF_LINES ? 1 : 2; }
+static int topology_index(const scree_vtkhdf_file *file) { return (int)file->def.topology; }
 
 static const char *current_path(const scree_vtkhdf_file *file)
 {

@@ -27,8 +27,10 @@ typedef enum scree_vtkhdf_extent
     SCREE_VTKHDF_NUM_EXTENTS
 } scree_vtkhdf_extent;
 
+/// In the order of the columns of CellOffsets.
 typedef enum scree_vtkhdf_topology
 {
+    SCREE_VTKHDF_VERTICES,
     SCREE_VTKHDF_LINES,
     SCREE_VTKHDF_POLYGONS
 } scree_vtkhdf_topology;

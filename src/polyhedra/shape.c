@@ -120,6 +120,27 @@ scree_status scree_shape_create(scree_shape *shape, const scree_mesh *mesh, scre
     return SCREE_OK;
 }
 
+void scree_shape_create_sphere(scree_shape *shape, double radius)
+{
+    const double pi = 3.14159265358979323846;
+    const scree_real r = (scree_real)radius; // the measures are those of the radius as stored
+    const double moment = 8.0 / 15.0 * pi * (double)r * (double)r * (double)r * (double)r * (double)r;
+    *shape = (scree_shape){0};
+    shape->properties.volume = 4.0 / 3.0 * pi * (double)r * (double)r * (double)r;
+    shape->properties.area = 4.0 * pi * (double)r * (double)r;
+    shape->properties.principal_axes[0] = 1.0;
+    shape->properties.bounding_radius = (double)r;
+    for (int k = 0; k < 3; ++k) shape->properties.inertia[k][k] = shape->properties.principal[k] = moment;
+    shape->frame_orientation[0] = 1.0;
+    shape->middle_size = 2.0 * (double)r;
+    shape->view.kind = SCREE_KIND_SPHERE;
+    shape->view.is_convex = true;
+    shape->view.bounding_radius = r;
+    shape->view.box.lower = scree_vec3_make(-r, -r, -r);
+    shape->view.box.upper = scree_vec3_make(r, r, r);
+    shape->view.tree.root = SCREE_LBVH_END;
+}
+
 void scree_shape_destroy(scree_shape *shape)
 {
     scree_mesh_destroy(&shape->mesh);

@@ -1,5 +1,6 @@
 /// \file shape.h
-/// What a body's shape is to the step: mesh in the body frame, the tree over its triangles, its measures.
+/// What a body's shape is to the step: a mesh in the body frame with the tree over its triangles, or a sphere; and its
+/// measures.
 #ifndef SCREE_SHAPE_INTERNAL_H
 #define SCREE_SHAPE_INTERNAL_H
 
@@ -7,9 +8,17 @@
 #include "polyhedra/mass_properties.h"
 #include "polyhedra/mesh.h"
 
+/// What a shape is made of; contacts are found by a table over the kinds of two shapes, see narrow_phase.h.
+typedef enum scree_shape_kind
+{
+    SCREE_KIND_MESH,
+    SCREE_KIND_SPHERE ///< of bounding_radius about the origin; no vertices, triangles or tree
+} scree_shape_kind;
+
 /// Geometry of one shape as kernels see it: borrowed pointers, body frame, unscaled.
 typedef struct scree_shape_view
 {
+    scree_shape_kind kind;
     const scree_vec3 *vertices;      ///< (num_vertices)
     const scree_triangle *triangles; ///< (num_triangles)
     const int32_t *neighbours;       ///< (num_triangles, 3) triangle across edge (v[k], v[k+1])
@@ -18,7 +27,7 @@ typedef struct scree_shape_view
     int32_t num_triangles;
     bool is_convex;
     scree_real bounding_radius; ///< about the origin of the body frame
-    scree_box box;              ///< of the vertices, body frame
+    scree_box box;              ///< of the vertices, or of the sphere; body frame
 } scree_shape_view;
 
 /// Owns its mesh and tree; shared by all bodies of this shape. Start from {0}.
@@ -27,7 +36,7 @@ typedef struct scree_shape
     scree_mesh mesh; ///< body frame
     int32_t *neighbours;
     scree_lbvh tree;
-    scree_mass_properties properties; ///< of the mesh as stored, in the body frame
+    scree_mass_properties properties; ///< of the mesh as stored, or of the sphere; in the body frame
     scree_shape_view view;
     double frame_position[3];    ///< origin of the body frame in the frame of the source mesh
     double frame_orientation[4]; ///< body frame to source frame, (w, x, y, z)
@@ -43,6 +52,8 @@ typedef enum scree_shape_frame
 
 /// Copies the mesh, which must be valid, moves it into its frame and builds the tree.
 scree_status scree_shape_create(scree_shape *shape, const scree_mesh *mesh, scree_shape_frame frame);
+/// A true sphere about the origin. radius > 0 [m].
+void scree_shape_create_sphere(scree_shape *shape, double radius);
 void scree_shape_destroy(scree_shape *shape);
 
 #endif

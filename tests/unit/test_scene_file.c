@@ -404,6 +404,30 @@ static void test_faults_of_values(void)
     }
 }
 
+static void test_faults_of_true_spheres(void)
+{
+    static const struct
+    {
+        int line;
+        const char *replacement, *message;
+    } cases[] = {
+        {21, "  - {name: ball, source: sphere, triangles: 3}",
+         "test.yaml:21: triangles of shapes.3 is 3; it must be 0 for a true sphere, or from 4 on for a mesh"},
+        {21, "  - {name: ball, source: sphere, copies: 2}",
+         "copies of shapes.3 is 2, but a true sphere (triangles: 0) cannot be repeated"},
+        {22, "  - {name: tetra, source: sphere}",
+         "shape of walls.1 is \"tetra\", a true sphere (triangles: 0), but walls are meshes"},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; ++k)
+    {
+        char *text = with_line(cases[k].line, cases[k].replacement);
+        char *messages = messages_of(text, NULL, SCREE_INVALID_INPUT);
+        SCREE_CHECK_CONTAINS(messages, cases[k].message);
+        free(messages);
+        free(text);
+    }
+}
+
 static void test_warnings_of_keys_without_effect(void)
 {
     static const struct
@@ -693,6 +717,7 @@ int main(void)
     SCREE_RUN(test_overrides);
     SCREE_RUN(test_faults_of_overrides);
     SCREE_RUN(test_faults_of_values);
+    SCREE_RUN(test_faults_of_true_spheres);
     SCREE_RUN(test_warnings_of_keys_without_effect);
     SCREE_RUN(test_faults_of_syntax);
     SCREE_RUN(test_numbers);

@@ -1,0 +1,215 @@
+/// \file closest_point_kernel.h
+/// The points of a mesh's surface that are nearest to a given point: on one triangle, on the whole mesh, and which of
+/// the triangles' nearest points are local minima of the distance over the surface, seen from outside or from inside.
+///
+/// On one triangle: Ericson (2005), Real-Time Collision Detection, 5.1.5. The distance to a triangle is a convex
+/// function, so a point of the surface is a local minimum exactly if it is the nearest point of every triangle that
+/// holds it. Where rounding lets triangles disagree about a shared edge or vertex, the nearest of their answers always
+/// stands.
+#ifndef SCREE_CLOSEST_POINT_KERNEL_H
+#define SCREE_CLOSEST_POINT_KERNEL_H
+
+#include "polyhedra/shape.h"
+
+/// Part of a triangle: its inside, edge k from v[k] to v[k + 1], or vertex k.
+typedef enum scree_triangle_part
+{
+    SCREE_PART_FACE,
+    SCREE_PART_EDGE,                        ///< + k
+    SCREE_PART_VERTEX = SCREE_PART_EDGE + 3 ///< + k
+} scree_triangle_part;
+
+/// The point of a triangle nearest to a centre.
+typedef struct scree_closest_point
+{
+    scree_vec3 offset;  ///< from the point to the centre
+    scree_real squared; ///< length of the offset, squared
+    int32_t triangle;
+    int32_t part; ///< scree_triangle_part
+} scree_closest_point;
+
+/// Twice the area times the outward normal of triangle t.
+SCREE_FN scree_vec3 scree_triangle_double_area(const scree_shape_view *mesh, int32_t t)
+{
+    const int32_t *v = mesh->triangles[t].v;
+    const scree_vec3 a = mesh->vertices[v[0]];
+    return scree_vec3_cross(scree_vec3_sub(mesh->vertices[v[1]], a), scree_vec3_sub(mesh->vertices[v[2]], a));
+}
+
+SCREE_FN scree_vec3 scree_triangle_normal(const scree_shape_view *mesh, int32_t t)
+{
+    const scree_vec3 area = scree_triangle_double_area(mesh, t);
+    return scree_vec3_scale(area, 1 / scree_vec3_length(area));
+}
+
+SCREE_FN scree_closest_point scree_closest_at_vertex(scree_vec3 to_centre, int32_t k)
+{
+    scree_closest_point closest;
+    closest.offset = to_centre;
+    closest.squared = scree_vec3_dot(to_centre, to_centre);
+    closest.triangle = -1;
+    closest.part = SCREE_PART_VERTEX + k;
+    return closest;
+}
+
+/// On the edge from a to b; `to_centre` starts at a.
+SCREE_FN scree_closest_point scree_closest_at_edge(scree_vec3 to_centre, scree_vec3 edge, scree_real share, int32_t k)
+{
+    scree_closest_point closest = scree_closest_at_vertex(scree_vec3_add_scaled(to_centre, edge, -share), k);
+    closest.part = SCREE_PART_EDGE + k;
+    return closest;
+}
+
+/// The nearest point of triangle t, its part decided by the projections on its edges. Exactly above an edge or a vertex
+/// the face counts.
+SCREE_FN scree_closest_point scree_closest_part(const scree_shape_view *mesh, int32_t t, scree_vec3 centre)
+{
+    const int32_t *v = mesh->triangles[t].v;
+    const scree_vec3 a = mesh->vertices[v[0]], b = mesh->vertices[v[1]], c = mesh->vertices[v[2]];
+    const scree_vec3 ab = scree_vec3_sub(b, a), ac = scree_vec3_sub(c, a);
+    const scree_vec3 from_a = scree_vec3_sub(centre, a);
+    const scree_real d1 = scree_vec3_dot(ab, from_a), d2 = scree_vec3_dot(ac, from_a);
+    if (d1 <= 0 && d2 <= 0 && d1 + d2 < 0) return scree_closest_at_vertex(from_a, 0);
+
+    const scree_vec3 from_b = scree_vec3_sub(centre, b);
+    const scree_real d3 = scree_vec3_dot(ab, from_b), d4 = scree_vec3_dot(ac, from_b);
+    if (d3 >= 0 && d4 <= d3 && (d3 > 0 || d4 < 0)) return scree_closest_at_vertex(from_b, 1);
+    if (d1 * d4 - d3 * d2 < 0 && d1 >= 0 && d3 <= 0) return scree_closest_at_edge(from_a, ab, d1 / (d1 - d3), 0);
+
+    const scree_vec3 from_c = scree_vec3_sub(centre, c);
+    const scree_real d5 = scree_vec3_dot(ab, from_c), d6 = scree_vec3_dot(ac, from_c);
+    if (d6 >= 0 && d5 <= d6 && (d6 > 0 || d5 < 0)) return scree_closest_at_vertex(from_c, 2);
+    if (d5 * d2 - d1 * d6 < 0 && d2 >= 0 && d6 <= 0) return scree_closest_at_edge(from_a, ac, d2 / (d2 - d6), 2);
+    if (d3 * d6 - d5 * d4 < 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
+        return scree_closest_at_edge(from_b, scree_vec3_sub(c, b), (d4 - d3) / ((d4 - d3) + (d5 - d6)), 1);
+
+    // through the height over the plane: nothing is lost far from the corners
+    const scree_vec3 normal = scree_triangle_normal(mesh, t);
+    const scree_real height = scree_vec3_dot(normal, from_a);
+    scree_closest_point closest = scree_closest_at_vertex(scree_vec3_scale(normal, height), 0);
+    closest.part = SCREE_PART_FACE;
+    return closest;
+}
+
+SCREE_FN scree_closest_point scree_closest_on_triangle(const scree_shape_view *mesh, int32_t t, scree_vec3 centre)
+{
+    scree_closest_point closest = scree_closest_part(mesh, t, centre);
+    closest.triangle = t;
+    return closest;
+}
+
+/// A surface that is approached: where the nearest point lies, seen from the centre.
+typedef struct scree_approach
+{
+    scree_vec3 normal; ///< unit, out of the mesh's solid
+    scree_real height; ///< of the centre above the point along the normal; negative where it is seen from inside
+    int32_t rank;      ///< 0: in a face, 1: on an edge, 2: in a vertex
+} scree_approach;
+
+/// Outward side of an edge or vertex: the sum of the normals of the two triangles at the edge nearest to the centre.
+/// No great circle between that edge and the direction of the centre meets the surface, so the edge's side is the
+/// centre's side; for a vertex it does what weighting by angles does (Baerentzen & Aanaes 2005) without angles.
+SCREE_FN scree_approach scree_approach_of_edge(const scree_closest_point *closest, scree_vec3 outward)
+{
+    scree_approach approach;
+    const scree_real length = scree_sqrt(closest->squared);
+    approach.rank = closest->part < SCREE_PART_VERTEX ? 1 : 2;
+    approach.height = scree_vec3_dot(outward, closest->offset) > 0 ? length : -length;
+    approach.normal = length > 0 ? scree_vec3_scale(closest->offset, 1 / approach.height)
+                                 : scree_vec3_scale(outward, 1 / scree_vec3_length(outward));
+    return approach;
+}
+
+SCREE_FN scree_vec3 scree_edge_outward(const scree_shape_view *mesh, int32_t t, int32_t k)
+{
+    return scree_vec3_add(scree_triangle_normal(mesh, t), scree_triangle_normal(mesh, mesh->neighbours[3 * t + k]));
+}
+
+/// Position of vertex v in triangle t.
+SCREE_FN int32_t scree_corner_of(const scree_shape_view *mesh, int32_t t, int32_t v)
+{
+    const int32_t *of = mesh->triangles[t].v;
+    return of[0] == v ? 0 : of[1] == v ? 1 : 2;
+}
+
+/// The edge at a vertex (part of `closest`) that makes the smallest angle with the offset: goes round its triangles.
+SCREE_FN scree_vec3 scree_vertex_outward(const scree_shape_view *mesh, const scree_closest_point *closest)
+{
+    const int32_t v = mesh->triangles[closest->triangle].v[closest->part - SCREE_PART_VERTEX];
+    int32_t t = closest->triangle, best = t;
+    scree_real most = -SCREE_REAL_MAX;
+    do {
+        const int32_t k = scree_corner_of(mesh, t, v);
+        const scree_vec3 edge = scree_vec3_sub(mesh->vertices[mesh->triangles[t].v[(k + 1) % 3]], mesh->vertices[v]);
+        const scree_real along = scree_vec3_dot(edge, closest->offset) / scree_vec3_length(edge);
+        if (along > most)
+        {
+            most = along;
+            best = t;
+        }
+        t = mesh->neighbours[3 * t + k];
+    } while (t != closest->triangle);
+    return scree_edge_outward(mesh, best, scree_corner_of(mesh, best, v));
+}
+
+/// Normal and height of a nearest point.
+SCREE_FN scree_approach scree_approach_of(const scree_shape_view *mesh, const scree_closest_point *closest)
+{
+    if (closest->part == SCREE_PART_FACE)
+    {
+        scree_approach approach;
+        approach.normal = scree_triangle_normal(mesh, closest->triangle);
+        approach.height = scree_vec3_dot(approach.normal, closest->offset);
+        approach.rank = 0;
+        return approach;
+    }
+    if (closest->part < SCREE_PART_VERTEX)
+        return scree_approach_of_edge(closest,
+                                      scree_edge_outward(mesh, closest->triangle, closest->part - SCREE_PART_EDGE));
+    return scree_approach_of_edge(closest, scree_vertex_outward(mesh, closest));
+}
+
+/// Does triangle t come nearer than the point, or as near with a smaller index?
+SCREE_FN bool scree_is_nearer(const scree_shape_view *mesh, int32_t t, scree_vec3 centre, scree_closest_point than)
+{
+    const scree_closest_point other = scree_closest_on_triangle(mesh, t, centre);
+    return other.squared < than.squared || (other.squared == than.squared && t < than.triangle);
+}
+
+/// Is the nearest point of one triangle a local minimum over the surface? Of those that tie, one triangle's says yes.
+SCREE_FN bool scree_is_local_minimum(const scree_shape_view *mesh, scree_vec3 centre, scree_closest_point closest)
+{
+    if (closest.part == SCREE_PART_FACE) return true;
+    if (closest.part < SCREE_PART_VERTEX)
+        return !scree_is_nearer(mesh, mesh->neighbours[3 * closest.triangle + closest.part - SCREE_PART_EDGE], centre,
+                                closest);
+    const int32_t v = mesh->triangles[closest.triangle].v[closest.part - SCREE_PART_VERTEX];
+    int32_t t = mesh->neighbours[3 * closest.triangle + closest.part - SCREE_PART_VERTEX];
+    while (t != closest.triangle)
+    {
+        if (scree_is_nearer(mesh, t, centre, closest)) return false;
+        t = mesh->neighbours[3 * t + scree_corner_of(mesh, t, v)];
+    }
+    return true;
+}
+
+/// The nearest point of the whole surface; the mesh must have triangles.
+SCREE_FN scree_closest_point scree_closest_on_mesh(const scree_shape_view *mesh, scree_vec3 centre)
+{
+    scree_closest_point nearest = scree_closest_on_triangle(mesh, 0, centre);
+    int32_t k = mesh->tree.root;
+    while (k != SCREE_LBVH_END)
+    {
+        const scree_lbvh_node *node = mesh->tree.nodes + k;
+        const bool is_entered = scree_box_distance_squared(node->box, centre) <= nearest.squared;
+        if (is_entered && node->first_child < 0)
+        {
+            const scree_closest_point other = scree_closest_on_triangle(mesh, -1 - node->first_child, centre);
+            if (other.squared < nearest.squared) nearest = other;
+        }
+        k = is_entered && node->first_child >= 0 ? node->first_child : node->escape;
+    }
+    return nearest;
+}
+
+#endif

@@ -1,0 +1,147 @@
+// True spheres: free fall, Hertz impact, bounces, and a ball on a plane cut into many triangles.
+#include "scene_run.h"
+
+#define HEAD                                                                       \
+    "materials:\n"                                                                 \
+    "  - {name: glass, density: 2500, youngs_modulus: 1e8, poisson_ratio: 0.25}\n" \
+    "shapes:\n"                                                                    \
+    "  - {name: ball, source: sphere, size: 0.02}\n"                               \
+    "  - {name: plate, source: box, size: [2, 2, 0.2]}\n"
+
+static const double radius = 0.01, modulus = 1e8 / (2 * (1 - 0.0625)); // E* of two equal bodies
+
+static double ball_mass(void) { return 2500 * 4.0 / 3.0 * M_PI * radius * radius * radius; }
+
+static void test_free_fall_and_spin(void)
+{
+    scene_run run;
+    scene_run_start(&run, "name: fall\ntime: {end: 1, step: 1e-3}\n" HEAD
+                          "contact_laws: [{materials: [glass, glass], friction_coefficient: 0.5, damping_ratio: 0}]\n"
+                          "particles:\n  - name: one\n    shape: ball\n    material: glass\n"
+                          "    bodies: [{position: [1, 2, 3], velocity: [0.5, 0, 2], angular_velocity: [0, 0, 3]}]\n");
+    scene_run_until(&run, 1.0);
+    if (run.simulation != NULL)
+    {
+        const scree_particles *p = &run.simulation->particles;
+        // constant force: velocity Verlet is exact, 1000 steps of rounding remain
+        SCREE_CHECK_CLOSE(p->mass[0], ball_mass(), 4e-16 * 4);
+        SCREE_CHECK_CLOSE(p->inertia[0].x, 0.4 * ball_mass() * radius * radius, 1e-20);
+        SCREE_CHECK_CLOSE(p->position[0].z, 3 + 2 - 0.5 * 9.81, 1e-11);
+        SCREE_CHECK_CLOSE(p->velocity[0].z, 2 - 9.81, 1e-11);
+        const double angle = 2 * atan2((double)p->orientation[0].z, (double)p->orientation[0].w);
+        SCREE_CHECK_CLOSE(angle, 1000 * 4 * atan(3e-3 / 4), 1e-11); // the Cayley map of the rotation
+    }
+    scene_run_end(&run);
+}
+
+/// Central elastic impact with +-speed: greatest indentation, time in contact and speed after, by a step of t_c/num.
+static void impact(double speed, int num, double expected_time, double *deepest, double *contact_time, double *after)
+{
+    char text[2048];
+    snprintf(text, sizeof text,
+             "name: impact\ngravity: [0, 0, 0]\ntime: {end: 1, step: %.17g}\n" HEAD
+             "contact_laws: [{materials: [glass, glass], friction_coefficient: 0, damping_ratio: 0}]\n"
+             "particles:\n  - name: two\n    shape: ball\n    material: glass\n    bodies:\n"
+             "      - {position: [-0.011, 0, 0], velocity: [%.17g, 0, 0]}\n"
+             "      - {position: [0.011, 0, 0], velocity: [%.17g, 0, 0]}\n",
+             expected_time / num, speed, -speed);
+    scene_run run;
+    scene_run_start(&run, text);
+    *deepest = *contact_time = *after = NAN;
+    if (run.simulation == NULL) return;
+    const scree_particles *p = &run.simulation->particles;
+    double begin = NAN, end = NAN, gap = 0.002, before[3] = {0};
+    while (isnan(end) && run.simulation->step < 100 * num)
+    {
+        const double last_gap = gap;
+        SCREE_CHECK_INT(scree_simulation_step(run.simulation, &run.report), SCREE_OK);
+        const double time = scree_simulation_time(run.simulation), dt = run.simulation->time_step;
+        gap = (double)(p->position[1].x - p->position[0].x) - 2 * radius;
+        // the forces begin and end with d^(3/2), so straight lines find the moments to second order
+        if (last_gap >= 0 && gap < 0) begin = time - dt * gap / (gap - last_gap);
+        if (last_gap < 0 && gap >= 0) end = time - dt * gap / (gap - last_gap);
+        // top of the parabola through three depths
+        before[0] = before[1];
+        before[1] = before[2];
+        before[2] = -gap;
+        const double curve = before[0] - 2 * before[1] + before[2], slope = 0.5 * (before[2] - before[0]);
+        if (before[1] > before[0] && before[1] >= before[2]) *deepest = before[1] - 0.5 * slope * slope / curve;
+    }
+    *contact_time = end - begin;
+    *after = (double)p->velocity[1].x;
+    scene_run_end(&run);
+}
+
+/// Johnson (1985), 11.1: d_max = (15 m* v^2/(16 E* sqrt R*))^(2/5), t_c = 2.94328 d_max/v, v the speed of approach.
+static void test_hertz_impact(void)
+{
+    const double speed = 0.5, v = 2 * speed, m = ball_mass() / 2;
+    const double d_max = pow(15 * m * v * v / (16 * modulus * sqrt(radius / 2)), 0.4);
+    const double t_c = 2.943275 * d_max / v; // 2.943275: 2 int_0^1 dx/sqrt(1 - x^(5/2)), to six digits
+    double error[3][3];
+    for (int k = 0; k < 3; ++k)
+    {
+        double deepest, time, after;
+        impact(speed, 50 << k, t_c, &deepest, &time, &after);
+        error[k][0] = fabs(deepest / d_max - 1);
+        error[k][1] = fabs(time / t_c - 1);
+        error[k][2] = fabs(after / speed - 1);
+        printf("t_c/dt = %d: relative errors of d_max %.2e, t_c %.2e, speed after %.2e\n", 50 << k, error[k][0],
+               error[k][1], error[k][2]);
+    }
+    for (int q = 0; q < 3; ++q)
+    {
+        // second order: w = pi/t_c is the largest rate in the motion, and the error constant of velocity Verlet for an
+        // oscillation is 1/24 in the period and 1/8 in the amplitude: (w dt)^2/8 at the worst, once more for the ends
+        // of the contact, where the force has a kink in its second derivative
+        for (int k = 0; k < 3; ++k) SCREE_CHECK(error[k][q] < pow(M_PI / (50 << k), 2) / 4);
+        // and it falls with the square of the step; the speed after depends on where within a step contact began
+        if (q < 2) SCREE_CHECK(error[2][q] < error[0][q] / 8);
+    }
+}
+
+/// Heights of bounces with restitution e: e^(2k) h above the height of rest.
+static void test_bounces(void)
+{
+    const double e = 0.8, height = 0.05, g = 9.81;
+    scene_run run;
+    scene_run_start(&run, "name: bounce\ntime: {end: 1, step: 5e-6}\n" HEAD
+                          "contact_laws: [{materials: [glass, glass], friction_coefficient: 0.3, "
+                          "restitution_coefficient: 0.8}]\n"
+                          "particles:\n  - name: one\n    shape: ball\n    material: glass\n"
+                          "    bodies: [{position: [0.1, -0.2, 0.06]}]\n"
+                          "walls:\n  - {name: floor, shape: plate, material: glass, position: [0, 0, -0.1]}\n");
+    if (run.simulation == NULL) return;
+    const scree_particles *p = &run.simulation->particles;
+    double top = 0, last = 1;
+    int num_bounces = 0;
+    while (num_bounces < 4 && scree_simulation_time(run.simulation) < 1)
+    {
+        SCREE_CHECK_INT(scree_simulation_step(run.simulation, &run.report), SCREE_OK);
+        const double above = (double)p->position[0].z - radius;
+        if (above < 0 && last >= 0 && num_bounces++ > 0)
+        {
+            const double expected = height * pow(e, 2 * (num_bounces - 1));
+            printf("bounce %d: height %.6f m, expected %.6f m\n", num_bounces - 1, top, expected);
+            // the fit of the damping is good to 4e-4; over the time in contact, that of Hertz, weight changes the speed
+            // by g t_c: both count twice per bounce, for height goes with the square of the speed
+            const double v = sqrt(2 * g * expected);
+            const double t_c = 2.943275 * pow(15 * ball_mass() * v * v / (16 * modulus * sqrt(radius)), 0.4) / v;
+            SCREE_CHECK_CLOSE(top / expected, 1, 2 * (num_bounces - 1) * (4e-4 + g * t_c / v));
+        }
+        if (above < 0) top = 0;
+        top = fmax(top, above);
+        last = above;
+    }
+    SCREE_CHECK_INT(num_bounces, 4);
+    SCREE_CHECK_CLOSE(p->position[0].x, 0.1, 0);
+    scene_run_end(&run);
+}
+
+int main(void)
+{
+    SCREE_RUN(test_free_fall_and_spin);
+    SCREE_RUN(test_hertz_impact);
+    SCREE_RUN(test_bounces);
+    return SCREE_TEST_END();
+}

@@ -36,6 +36,7 @@ typedef struct made_simulation
     scree_scene scene;
     scree_wall_def wall_defs[MADE_WALLS];
     scree_wall_state walls[MADE_WALLS];
+    scree_shape shapes[2];
     scree_shape_view views[4];
     scree_force_law law;
 } made_simulation;
@@ -75,10 +76,11 @@ static inline void made_simulation_set_contacts(made_simulation *made, int64_t n
         c->elastic_work[k] = (scree_real)(x / 3);
         c->spring_work[k] = (scree_real)(x / 5);
         c->is_slipping[k] = k % 2 == 0;
-        c->is_twisting[k] = k % 3 == 0;
+        c->is_turning[k] = k % 3 == 0;
         c->spring_force[k] = scree_vec3_make((scree_real)(2 * x), 0, 0);
         c->tangential_stiffness[k] = (scree_real)(1e5 * x);
         c->torsion[k] = (scree_real)(x / 9);
+        c->rolling_moment[k] = scree_vec3_make(0, (scree_real)(x / 11), 0);
         c->elastic_energy[k] = (scree_real)(x * 1e-3);
         c->spring_energy[k] = (scree_real)(x * 2e-3);
     }
@@ -130,6 +132,8 @@ static inline void made_simulation_create(made_simulation *made)
     s->scene = &made->scene;
     for (int k = 0; k < 4; ++k) made->views[k] = made_view(k % 2 == 1);
     s->shape_views = made->views;
+    for (int k = 0; k < 2; ++k) made->shapes[k].properties.volume = k == 0 ? 1.0 / 6 : 1;
+    s->particle_shapes = made->shapes;
     s->num_shapes = 2;
     s->num_materials = 1;
     s->laws = &made->law;

@@ -19,12 +19,12 @@ extern "C"
         double kinetic; ///< of translation
         double rotational;
         double potential;          ///< gravity, zero at the origin
-        double elastic_normal;     ///< 2/5 F d of present contacts, exact for Hertz
-        double elastic_tangential; ///< of the tangential and torsion springs of present contacts
+        double elastic_normal;     ///< of the normal forces of present contacts
+        double elastic_tangential; ///< of the tangential, torsion and rolling springs of present contacts
         double damping;            ///< dissipated by normal and tangential damping, accumulated
         double friction;           ///< dissipated by slip and lost tangential springs, accumulated
         double hysteresis; ///< work against the elastic normal forces that elastic_normal did not take up, accumulated;
-                           ///< the volumetric law is not the gradient of an energy, so it may have either sign
+                           ///< Hertz on the overlap volume is not the gradient of an energy, so it may have either sign
         double input;      ///< put in by moving walls, accumulated
     } scree_energies;
 

@@ -27,16 +27,30 @@ extern "C"
         SCREE_SHEAR_BILOCK   ///< (1 - nu1^2)/G1 + (1 - nu2^2)/G2, Bilock (2020), eq. 4.11
     } scree_shear_mixing;
 
+    /// Moment against rolling (Ai, Chen, Rotter & Ooi 2011).
+    typedef enum scree_rolling_resistance_kind
+    {
+        SCREE_ROLLING_NONE,
+        SCREE_ROLLING_CONSTANT, ///< type A: constant moment against the relative rotation
+        SCREE_ROLLING_SPRING    ///< type C: spring with limit
+    } scree_rolling_resistance_kind;
+
     typedef struct scree_contact_law_def
     {
-        char *materials[2];             ///< names of the two materials, in any order
-        char *model;                    ///< name in the registry of force models, default "volumetric_hertz_mindlin"
-        double friction_coefficient;    ///< [1]
-        double restitution_coefficient; ///< [1]; auto if damping_ratio is given; exactly one of the two
-        double damping_ratio;           ///< [1] g of physics section 2; auto: from the restitution coefficient
-        double stiffness_factor;        ///< [1] factor of the volumetric law, default 0.7522527780636751
-        double tangential_spring;       ///< [1] 1: with tangential history, 0: tangential damping alone
-        bool attraction;                ///< true: the total normal force may turn attractive at separation
+        char *materials[2];                  ///< names of the two materials, in any order
+        char *model;                         ///< name in the registry of force models, default "hertz_mindlin"
+        double friction_coefficient;         ///< [1]
+        double restitution_coefficient;      ///< [1]; auto if damping_ratio is given; exactly one of the two
+        double damping_ratio;                ///< [1] g of 2 g sqrt(m* k) v; auto: from the restitution coefficient
+        double tangential_damping_ratio;     ///< [1] auto: damping_ratio
+        double stiffness_factor;             ///< [1] of hertz_mindlin; auto: 4/(3 sqrt(pi))
+        double normal_stiffness;             ///< [N/m] of linear_spring, auto otherwise
+        double tangential_stiffness;         ///< [N/m] of linear_spring; auto: normal_stiffness 4 G*/E*
+        double tangential_spring;            ///< [1] 1: with tangential history, 0: tangential damping alone
+        double rolling_friction_coefficient; ///< [1] of a rolling resistance, auto without
+        double rolling_damping_ratio;        ///< [1] of a rolling spring, default 0
+        scree_rolling_resistance_kind rolling_resistance;
+        bool attraction;      ///< true: the total normal force may turn attractive at separation
         bool contact_moments; ///< default true: springs and dashpots of a contact resist twisting and rocking too
         scree_shear_mixing shear_mixing;
     } scree_contact_law_def;

@@ -20,10 +20,11 @@
     X(elastic_work)             \
     X(spring_work)              \
     X(is_slipping)              \
-    X(is_twisting)              \
+    X(is_turning)               \
     X(spring_force)             \
     X(tangential_stiffness)     \
     X(torsion)                  \
+    X(rolling_moment)           \
     X(spring_energy)            \
     X(elastic_energy)
 

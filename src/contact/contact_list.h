@@ -29,18 +29,19 @@ typedef struct scree_contact_list
     scree_vec3 *normal_force;     ///< [N] on i; that on j is the exact opposite
     scree_vec3 *tangential_force; ///< [N] on i, spring and damping, capped
     scree_real *elastic_force;    ///< [N] elastic part of the normal force
-    scree_vec3 *moment;           ///< [N m] on i, of the contact area: torsion and rocking
+    scree_vec3 *moment;           ///< [N m] on i, torsion, rocking and rolling resistance
     scree_real *elastic_work;     ///< [J] change of elastic_energy in this step
     scree_real *spring_work;      ///< [J] change of spring_energy in this step
     uint8_t *is_slipping;         ///< 1 while the tangential force is at the Coulomb limit
-    uint8_t *is_twisting;         ///< 1 while the torsion is at its Coulomb limit
+    uint8_t *is_turning;          ///< 1 while torsion or rolling resistance is at its limit
 
     // history, carried from step to step
     scree_vec3 *spring_force;         ///< [N] elastic part of the tangential force on i
     scree_real *tangential_stiffness; ///< [N/m] k_t of the last step
     scree_real *torsion;              ///< [N m] elastic part of the moment about the normal, on i
-    scree_real *elastic_energy;       ///< [J] of the normal force, 2/5 F d
-    scree_real *spring_energy;        ///< [J] of the tangential and the torsion spring
+    scree_vec3 *rolling_moment;       ///< [N m] elastic part of the rolling resistance on i
+    scree_real *elastic_energy;       ///< [J] of the normal force
+    scree_real *spring_energy;        ///< [J] of the tangential, the torsion and the rolling spring
 } scree_contact_list;
 
 /// Room for num_contacts and num_pairs, growing by half at least. SCREE_OUT_OF_MEMORY leaves the list as it was.

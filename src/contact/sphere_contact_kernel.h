@@ -2,8 +2,8 @@
 /// Contacts of true spheres: with each other and with meshes.
 ///
 /// A sphere contact has an indentation d and a normal n through the sphere's centre; its point lies in the middle of
-/// the overlap, and its volume is pi R* d^2, the limit of the overlap volume for small d, so that the volumetric law is
-/// Hertz-Mindlin. On a mesh R* is the sphere's radius, as on a plane.
+/// the overlap, and its volume is pi R* d^2, the limit of the overlap volume for small d, so that hertz_mindlin is what
+/// its name says. On a mesh R* is the sphere's radius, as on a plane.
 ///
 /// A mesh is touched where the distance from the centre over its surface has a local minimum below the radius: in a
 /// face, on an edge or in a vertex, each once, however the surface is cut into triangles; a groove or a corner is

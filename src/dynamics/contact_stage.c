@@ -89,6 +89,7 @@ scree_body_motion scree_step_body_motion(const scree_step_buffers *buffers)
     motion.velocity = buffers->velocity;
     motion.angular_velocity = buffers->angular_velocity;
     motion.inverse_mass = buffers->inverse_mass;
+    motion.inverse_radius = buffers->inverse_radius;
     motion.material = buffers->material;
     return motion;
 }

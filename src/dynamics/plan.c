@@ -11,7 +11,7 @@ static const size_t bytes_constant = 2 * sizeof(scree_real) + sizeof(scree_vec3)
 static const size_t bytes_search =
     2 * sizeof(scree_pose) + sizeof(scree_box) + sizeof(scree_vec3) + sizeof(scree_real) + 2 * sizeof(scree_lbvh_node);
 static const size_t bytes_contact =
-    2 * (sizeof(scree_candidate_pair) + sizeof(int32_t) + 5 * sizeof(scree_real) + 7 * sizeof(scree_vec3) + 1) +
+    2 * (sizeof(scree_candidate_pair) + sizeof(int32_t) + 10 * sizeof(scree_real) + 8 * sizeof(scree_vec3) + 2) +
     sizeof(int64_t) + 1;
 static const size_t bytes_pair = sizeof(scree_candidate_pair) + 4 * sizeof(int32_t) + 2 * sizeof(int64_t);
 static const size_t bytes_mesh_pair =
@@ -59,16 +59,34 @@ static size_t print_narrow_phase(const scree_simulation *s, FILE *out)
     return largest;
 }
 
+/// What the laws of the scene bring along.
+static void describe_forces(const scree_simulation *s, char *text, size_t size)
+{
+    bool is_used[SCREE_NUM_FORCE_MODELS] = {false}, has_spring = false, has_damping = false, has_rolling = false;
+    for (int32_t k = 0; k < s->num_materials * s->num_materials; ++k)
+    {
+        const scree_force_law *law = s->laws + k;
+        if (!(law->effective_modulus > 0)) continue; // no law for this pair
+        is_used[law->model] = true;
+        has_spring |= law->has_tangential_spring && law->friction_coefficient > 0;
+        has_damping |= law->damping_ratio > 0;
+        has_rolling |= law->rolling != SCREE_ROLLING_NONE;
+    }
+    size_t length = 0;
+    for (int32_t m = 0; m < SCREE_NUM_FORCE_MODELS && length < size; ++m)
+        if (is_used[m])
+            length += (size_t)snprintf(text + length, size - length, "%s%s", length > 0 ? ", " : "",
+                                       scree_force_models()[m].name);
+    if (length < size)
+        snprintf(text + length, size - length, "%s%s%s", has_damping ? ", damping" : "",
+                 has_spring ? ", tangential spring" : "", has_rolling ? ", rolling resistance" : "");
+}
+
 void scree_simulation_print_plan(const scree_simulation *simulation, void *stream)
 {
     FILE *out = stream;
     const scree_simulation *s = simulation;
-    bool has_spring = false, has_damping = false, is_moving = false;
-    for (int32_t k = 0; k < s->num_materials * s->num_materials; ++k)
-    {
-        has_spring |= s->laws[k].has_tangential_spring && s->laws[k].friction_coefficient > 0;
-        has_damping |= s->laws[k].damping_ratio > 0;
-    }
+    bool is_moving = false;
     for (int32_t w = 0; w < s->num_walls; ++w) is_moving |= s->scene->walls[w].motion.kind != SCREE_MOTION_FIXED;
     char text[96];
 
@@ -83,8 +101,7 @@ void scree_simulation_print_plan(const scree_simulation *simulation, void *strea
     print_stage(out, "neighbours", text, bytes_search, "particle");
     print_stage(out, "", "candidate pairs and their rows", bytes_pair, "pair");
     const size_t largest_pair = print_narrow_phase(s, out);
-    snprintf(text, sizeof text, "volumetric Hertz-Mindlin%s%s", has_damping ? ", damping" : "",
-             has_spring ? ", tangential spring with history" : ", no tangential spring");
+    describe_forces(s, text, sizeof text);
     print_stage(out, "forces", text, 0, "");
     print_stage(out, "gather", "per particle over its row of contacts, in fixed order", 0, "");
     print_stage(out, "correct", "second half kick", 0, "");

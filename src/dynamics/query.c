@@ -70,6 +70,7 @@ uint64_t scree_simulation_hash(const scree_simulation *simulation)
     hash = scree_hash_bytes(hash, p->torque, n * sizeof *p->torque);
     hash = scree_hash_bytes(hash, contacts->bodies, m * sizeof *contacts->bodies);
     hash = scree_hash_bytes(hash, contacts->torsion, m * sizeof *contacts->torsion);
+    hash = scree_hash_bytes(hash, contacts->rolling_moment, m * sizeof *contacts->rolling_moment);
     hash = scree_hash_bytes(hash, contacts->spring_force, m * sizeof *contacts->spring_force);
     return scree_hash_bytes(hash, contacts->tangential_stiffness, m * sizeof *contacts->tangential_stiffness);
 }

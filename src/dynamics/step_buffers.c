@@ -1,6 +1,16 @@
+#define _DEFAULT_SOURCE /* M_PI */
 #include "dynamics/step_buffers.h"
 
+#include <math.h>
 #include <stdlib.h>
+
+/// Radius of the sphere of the particle's volume.
+static double equal_volume_radius(const scree_simulation *simulation, size_t i)
+{
+    const scree_particles *particles = &simulation->particles;
+    const scree_shape *shape = simulation->particle_shapes + particles->shape[i];
+    return cbrt(3 * shape->properties.volume / (4 * M_PI)) * (double)particles->scale[i];
+}
 
 scree_status scree_step_buffers_create(scree_simulation *simulation)
 {
@@ -17,6 +27,7 @@ scree_status scree_step_buffers_create(scree_simulation *simulation)
     SCREE_ALLOCATE(velocity, num_bodies)
     SCREE_ALLOCATE(angular_velocity, num_bodies)
     SCREE_ALLOCATE(inverse_mass, num_bodies)
+    SCREE_ALLOCATE(inverse_radius, num_bodies)
     SCREE_ALLOCATE(shape, num_bodies)
     SCREE_ALLOCATE(material, num_bodies)
     SCREE_ALLOCATE(searched_pose, num_bodies)
@@ -32,6 +43,7 @@ scree_status scree_step_buffers_create(scree_simulation *simulation)
     for (size_t i = 0; i < num_particles; ++i)
     {
         b->inverse_mass[i] = 1 / simulation->particles.mass[i];
+        b->inverse_radius[i] = (scree_real)(1 / equal_volume_radius(simulation, i));
         b->shape[i] = simulation->particles.shape[i];
         b->material[i] = simulation->particles.material[i];
     }
@@ -51,6 +63,7 @@ void scree_step_buffers_destroy(scree_simulation *simulation)
     free(b->velocity);
     free(b->angular_velocity);
     free(b->inverse_mass);
+    free(b->inverse_radius);
     free(b->shape);
     free(b->material);
     free(b->searched_pose);

@@ -13,6 +13,7 @@ typedef struct scree_step_buffers
     scree_vec3 *velocity;
     scree_vec3 *angular_velocity;
     scree_real *inverse_mass;
+    scree_real *inverse_radius;
     int32_t *shape; ///< index into shape_views
     int32_t *material;
 

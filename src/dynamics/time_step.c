@@ -20,9 +20,7 @@ double scree_time_step_critical(const scree_simulation *simulation)
         {
             // a pair of materials that cannot meet has no law, and so no stiffness
             const scree_force_law *law = simulation->laws + p->material[i] * simulation->num_materials + m;
-            const double normal = 2 * (double)law->effective_modulus * contact_radius;
-            const double tangential = 8 * (double)law->effective_shear_modulus * contact_radius;
-            stiffness = fmax(stiffness, fmax(normal, tangential));
+            stiffness = fmax(stiffness, scree_force_law_largest_stiffness(law, contact_radius));
         }
         smallest_squared = fmin(smallest_squared, (double)p->mass[i] / (3.5 * stiffness));
     }

@@ -5,10 +5,10 @@
 
 #include "dynamics/state.h"
 
-/// Smallest sqrt(m_eff/k) [s] to expect: over all particles and all materials they can meet, with a flat contact of
-/// half the bounding radius (k = 2 E* a, a = R/2), for spheres one at an indentation of R/50 (a = R/7), and the
-/// rotation of the particle taken into account by m_eff = m/3.5, the value of a sphere hit tangentially. A run counts
-/// the true one; see scree_counters.
+/// Smallest sqrt(m_eff/k) [s] to expect: over all particles and all materials they can meet, with the largest stiffness
+/// of their law on a flat contact of half the bounding radius, for spheres one at an indentation of R/50 (a = R/7), and
+/// the rotation of the particle taken into account by m_eff = m/3.5, the value of a sphere hit tangentially by a wall.
+/// A run counts the true one; see scree_counters.
 double scree_time_step_critical(const scree_simulation *simulation);
 
 #endif

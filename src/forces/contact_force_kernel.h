@@ -4,7 +4,7 @@
 #define SCREE_CONTACT_FORCE_KERNEL_H
 
 #include "contact/contact_list.h"
-#include "forces/volumetric_kernel.h"
+#include "forces/contact_law_kernel.h"
 
 /// Bodies as the forces see them: particles first, then walls; all (num_bodies).
 typedef struct scree_body_motion
@@ -13,6 +13,7 @@ typedef struct scree_body_motion
     const scree_vec3 *velocity;         ///< [m/s] at the position of the pose
     const scree_vec3 *angular_velocity; ///< [rad/s] world axes
     const scree_real *inverse_mass;     ///< [1/kg]; 0 for walls
+    const scree_real *inverse_radius;   ///< [1/m] of the sphere of the same volume; 0 for walls
     const int32_t *material;
 } scree_body_motion;
 
@@ -37,6 +38,16 @@ typedef struct scree_contact_force_args
     scree_real time_step; ///< [s]
 } scree_contact_force_args;
 
+/// Radius and inertia of rolling of a contact, those of the spheres of equal volume.
+SCREE_FN void scree_rolling_pair(const scree_body_motion *bodies, int32_t i, int32_t j, scree_contact_kinematics *k)
+{
+    const scree_real i_over_r = bodies->inverse_radius[i], j_over_r = bodies->inverse_radius[j];
+    k->effective_radius = 1 / (i_over_r + j_over_r);
+    // 1/(7/5 m R^2) of each
+    k->rolling_inertia = (scree_real)1.4 / (bodies->inverse_mass[i] * i_over_r * i_over_r +
+                                            bodies->inverse_mass[j] * j_over_r * j_over_r);
+}
+
 SCREE_FN void scree_contact_force_at(scree_contact_force_args a, int64_t c)
 {
     const scree_candidate_pair pair = a.contacts.bodies[c];
@@ -53,8 +64,12 @@ SCREE_FN void scree_contact_force_at(scree_contact_force_args a, int64_t c)
     k.relative_rotation = scree_vec3_sub(a.bodies.angular_velocity[pair.i], a.bodies.angular_velocity[pair.j]);
     k.effective_mass = 1 / (a.bodies.inverse_mass[pair.i] + a.bodies.inverse_mass[pair.j]);
     k.time_step = a.time_step;
+    k.effective_radius = 0;
+    k.rolling_inertia = 0;
+    if (law->rolling != SCREE_ROLLING_NONE) scree_rolling_pair(&a.bodies, pair.i, pair.j, &k);
     k.spring_force = scree_vec3_zero();
     k.torsion = 0;
+    k.rolling_moment = scree_vec3_zero();
     k.tangential_stiffness = 0;
     scree_real elastic_energy = 0, spring_energy = 0;
     const int64_t old = a.old_of_contact[c];
@@ -63,12 +78,13 @@ SCREE_FN void scree_contact_force_at(scree_contact_force_args a, int64_t c)
         k.spring_force = a.old_contacts.spring_force[old];
         k.tangential_stiffness = a.old_contacts.tangential_stiffness[old];
         k.torsion = a.old_contacts.torsion[old];
+        k.rolling_moment = a.old_contacts.rolling_moment[old];
         spring_energy = a.old_contacts.spring_energy[old];
         elastic_energy = a.old_contacts.elastic_energy[old];
     }
 
     scree_contact_force f;
-    scree_volumetric_force(law, &k, &f);
+    scree_contact_law(law, &k, &f);
 
     a.contacts.normal_force[c] = f.normal_force;
     a.contacts.tangential_force[c] = f.tangential_force;
@@ -77,8 +93,9 @@ SCREE_FN void scree_contact_force_at(scree_contact_force_args a, int64_t c)
     a.contacts.spring_force[c] = f.spring_force;
     a.contacts.tangential_stiffness[c] = f.tangential_stiffness;
     a.contacts.moment[c] = f.moment;
-    a.contacts.is_twisting[c] = f.is_twisting ? 1 : 0;
+    a.contacts.is_turning[c] = f.is_turning ? 1 : 0;
     a.contacts.torsion[c] = f.torsion;
+    a.contacts.rolling_moment[c] = f.rolling_moment;
     a.contacts.elastic_energy[c] = f.elastic_energy;
     a.contacts.elastic_work[c] = f.elastic_energy - elastic_energy;
     a.contacts.spring_energy[c] = f.spring_energy;

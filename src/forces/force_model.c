@@ -5,32 +5,59 @@
 #include <string.h>
 
 static const scree_force_model models[] = {
-    {"volumetric_hertz_mindlin",
-     "Hertz-Mindlin on the overlap volume: F = 4/(3 sqrt(pi)) E* sqrt(V d), damping, tangential spring, Coulomb limit",
-     "Nassauer & Kuna (2013), Granular Matter 15, 349; Bilock (2020), eqs. 4.16-4.18"},
+#define SCREE_MODEL(model, name, exponent, text, source) {name, exponent, text, source},
+    SCREE_FORCE_MODELS(SCREE_MODEL)
+#undef SCREE_MODEL
 };
 
-const scree_force_model *scree_force_models(int32_t *num_models)
+static const scree_force_parameter parameters[] = {
+#define SCREE_PARAMETER(name, unit, default_text, special, min, max, used_by, needed_by, meaning) \
+    {#name, used_by, needed_by},
+    SCREE_FORCE_PARAMETERS(SCREE_PARAMETER)
+#undef SCREE_PARAMETER
+};
+
+const scree_force_model *scree_force_models(void) { return models; }
+
+const scree_force_parameter *scree_force_parameters(int32_t *num_parameters)
 {
-    *num_models = (int32_t)(sizeof models / sizeof models[0]);
-    return models;
+    *num_parameters = (int32_t)(sizeof parameters / sizeof parameters[0]);
+    return parameters;
 }
 
-double scree_damping_ratio_from_restitution(double restitution_coefficient, bool has_attraction)
+int32_t scree_force_model_find(const char *name)
 {
-    const double e = restitution_coefficient;
+    for (int32_t k = 0; k < SCREE_NUM_FORCE_MODELS; ++k)
+        if (strcmp(models[k].name, name) == 0) return k;
+    return -1;
+}
+
+/// Restitution of the oscillator with damping ratio z when its force is never attractive.
+static double restitution_without_attraction(double z)
+{
+    if (z == 1) return exp(-2);
+    const double root = sqrt(fabs(1 - z * z));
+    return exp(-2 * z * (z < 1 ? acos(z) : acosh(z)) / root);
+}
+
+double scree_damping_ratio_from_restitution(double restitution_coefficient, double exponent, bool has_attraction)
+{
+    const double e = restitution_coefficient, factor = sqrt((exponent + 1) / (2 * exponent));
     if (e >= 1) return 0;
     if (has_attraction)
     {
         const double log_e = log(e);
-        return sqrt(5.0 / 6.0) * -log_e / sqrt(M_PI * M_PI + log_e * log_e);
+        return factor * -log_e / sqrt(M_PI * M_PI + log_e * log_e);
     }
-    // Thornton, Cummins & Cleary (2013): fit for a normal force that is never attractive
-    static const double h[] = {-6.918798, -16.41105, 146.8049,  -796.4559, 2928.711,
-                               -7206.864, 11494.29,  -11342.18, 6276.757,  -1489.915};
-    double a = 0;
-    for (int k = 9; k >= 0; --k) a = e * (h[k] + a);
-    return sqrt(1 / (1 - (1 + e) * (1 + e) * exp(a)) - 1);
+    // e falls with z; 1/(4 z^2) for large z
+    double low = 0, high = 1 / sqrt(e);
+    for (int k = 0; k < 100; ++k)
+    {
+        const double middle = 0.5 * (low + high);
+        if (restitution_without_attraction(middle) > e) low = middle;
+        else high = middle;
+    }
+    return factor * low;
 }
 
 /// Shear modulus as given, or from E and nu.
@@ -55,23 +82,44 @@ static double normal_compliance(const scree_material_def *material)
 scree_status scree_force_law_make(const scree_contact_law_def *def, const scree_material_def *a,
                                   const scree_material_def *b, scree_force_law *law)
 {
-    int32_t num_models, model = 0;
-    scree_force_models(&num_models);
-    while (model < num_models && strcmp(models[model].name, def->model) != 0) ++model;
-    if (model == num_models) return SCREE_NOT_FOUND;
+    const int32_t model = scree_force_model_find(def->model);
+    if (model < 0) return SCREE_NOT_FOUND;
 
-    const double damping_ratio =
-        isnan(def->damping_ratio) ? scree_damping_ratio_from_restitution(def->restitution_coefficient, def->attraction)
-                                  : def->damping_ratio;
+    const double modulus = 1 / (normal_compliance(a) + normal_compliance(b));
+    const double shear_modulus = 1 / (shear_compliance(a, def->shear_mixing) + shear_compliance(b, def->shear_mixing));
+    const double damping_ratio = isnan(def->damping_ratio)
+                                     ? scree_damping_ratio_from_restitution(def->restitution_coefficient,
+                                                                            models[model].exponent, def->attraction)
+                                     : def->damping_ratio;
+    const bool has_tangential_stiffness = model == SCREE_MODEL_LINEAR_SPRING && !isnan(def->tangential_stiffness);
+    *law = (scree_force_law){0};
     law->model = model;
-    law->effective_modulus = (scree_real)(1 / (normal_compliance(a) + normal_compliance(b)));
-    law->effective_shear_modulus =
-        (scree_real)(1 / (shear_compliance(a, def->shear_mixing) + shear_compliance(b, def->shear_mixing)));
-    law->stiffness_factor = (scree_real)def->stiffness_factor;
+    law->effective_modulus = (scree_real)modulus;
+    // 4/(3 sqrt(pi)), Hertz's between spheres
+    law->stiffness_factor = (scree_real)(isnan(def->stiffness_factor) ? 0.7522527780636751 : def->stiffness_factor);
+    if (model == SCREE_MODEL_LINEAR_SPRING) law->normal_stiffness = (scree_real)def->normal_stiffness;
+    law->tangential_over_normal =
+        (scree_real)(has_tangential_stiffness ? def->tangential_stiffness / def->normal_stiffness
+                                              : 4 * shear_modulus / modulus);
     law->damping_ratio = (scree_real)damping_ratio;
+    law->tangential_damping_ratio =
+        (scree_real)(isnan(def->tangential_damping_ratio) ? damping_ratio : def->tangential_damping_ratio);
     law->friction_coefficient = (scree_real)def->friction_coefficient;
+    law->rolling = (int32_t)def->rolling_resistance;
+    if (law->rolling != SCREE_ROLLING_NONE)
+    {
+        law->rolling_friction_coefficient = (scree_real)def->rolling_friction_coefficient;
+        law->rolling_damping_ratio = (scree_real)def->rolling_damping_ratio;
+    }
     law->has_tangential_spring = def->tangential_spring != 0;
     law->has_moments = def->contact_moments;
     law->has_attraction = def->attraction;
     return SCREE_OK;
+}
+
+double scree_force_law_largest_stiffness(const scree_force_law *law, double contact_radius)
+{
+    const double normal = law->model == SCREE_MODEL_LINEAR_SPRING ? 2 * (double)law->normal_stiffness
+                                                                  : 2 * (double)law->effective_modulus * contact_radius;
+    return normal * fmax(1, (double)law->tangential_over_normal);
 }

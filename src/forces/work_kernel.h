@@ -58,12 +58,12 @@ SCREE_FN void scree_work_of_contact(const scree_work_args *a, int64_t c, scree_w
     sums->hysteresis -= elastic * v_n * a->time_step + a->contacts.elastic_work[c];
     sums->damping -= (normal - elastic) * v_n * a->time_step;
 
-    // tangential and torsion: what the springs do not take up is lost
+    // tangential and moments: what the springs do not take up is lost
     const scree_vec3 rotation = scree_vec3_sub(a->bodies.angular_velocity[pair.i], a->bodies.angular_velocity[pair.j]);
     const scree_real power =
         scree_vec3_dot(a->contacts.tangential_force[c], v) + scree_vec3_dot(a->contacts.moment[c], rotation);
     const scree_real lost = -power * a->time_step - a->contacts.spring_work[c];
-    if (a->contacts.is_slipping[c] || a->contacts.is_twisting[c]) sums->friction += lost;
+    if (a->contacts.is_slipping[c] || a->contacts.is_turning[c]) sums->friction += lost;
     else sums->damping += lost;
 
     // a moving wall works on the particle
@@ -79,11 +79,11 @@ SCREE_FN void scree_work_of_contact(const scree_work_args *a, int64_t c, scree_w
             a->time_step;
     }
 
-    // k_n = k_t E*/(4 G*); the stiffer of the two counts
+    // the stiffer of the two counts
     const scree_force_law *law =
         a->laws + (int64_t)a->bodies.material[pair.i] * a->num_materials + a->bodies.material[pair.j];
     const scree_real k_t = a->contacts.tangential_stiffness[c];
-    const scree_real k_n = k_t * law->effective_modulus / (4 * law->effective_shear_modulus);
+    const scree_real k_n = k_t / law->tangential_over_normal;
     const scree_real inverse_mass =
         scree_inverse_mass_at(a, pair.i, arm, n) + scree_inverse_mass_at(a, pair.j, arm_j, n);
     sums->smallest_step_squared = scree_min(sums->smallest_step_squared, 1 / (inverse_mass * scree_max(k_n, k_t)));

@@ -53,9 +53,20 @@ static uint64_t hash_shape(uint64_t hash, const scree_shape_view *shape)
 
 static uint64_t hash_law(uint64_t hash, const scree_force_law *law)
 {
-    const double numbers[] = {law->effective_modulus,     law->effective_shear_modulus, law->stiffness_factor,
-                              law->damping_ratio,         law->friction_coefficient,    law->model,
-                              law->has_tangential_spring, law->has_attraction,          law->has_moments};
+    const double numbers[] = {law->effective_modulus,
+                              law->stiffness_factor,
+                              law->normal_stiffness,
+                              law->tangential_over_normal,
+                              law->damping_ratio,
+                              law->tangential_damping_ratio,
+                              law->friction_coefficient,
+                              law->rolling_friction_coefficient,
+                              law->rolling_damping_ratio,
+                              law->model,
+                              law->rolling,
+                              law->has_tangential_spring,
+                              law->has_attraction,
+                              law->has_moments};
     return hash_numbers(hash, numbers, (int)(sizeof numbers / sizeof numbers[0]));
 }
 

@@ -1,5 +1,6 @@
 /// \file scene_keys.c
 /// The reference of all keys, as Markdown, and what a key takes in words.
+#include "forces/force_model.h"
 #include "io/scene_schema.h"
 #include "scree/scene.h"
 
@@ -182,6 +183,15 @@ static bool must_be_given(const scree_scene_section *section, int key)
     return false;
 }
 
+/// The force models, below the keys of contact laws.
+static void print_models(FILE *out)
+{
+    const scree_force_model *models = scree_force_models();
+    fprintf(out, "\n| model | normal force | source |\n|---|---|---|\n");
+    for (int32_t k = 0; k < SCREE_NUM_FORCE_MODELS; ++k)
+        fprintf(out, "| `%s` | %s | %s |\n", models[k].name, models[k].text, models[k].source);
+}
+
 static void print_section(FILE *out, const scree_scene_section *section)
 {
     fprintf(out, "\n## %s\n\n%s\n\n| key | unit | default | range | meaning |\n|---|---|---|---|---|\n", section->title,
@@ -196,6 +206,7 @@ static void print_section(FILE *out, const scree_scene_section *section)
                 is_free ? "`" : "", is_free ? key->default_text : "must be given", is_free ? "`" : "", range,
                 key->meaning);
     }
+    if (section == scree_scene_law_section()) print_models(out);
     for (int k = 0; k < section->num_keys; ++k)
         if (section->keys[k].section != NULL) print_section(out, section->keys[k].section);
 }

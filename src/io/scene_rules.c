@@ -137,7 +137,52 @@ void scree_rules_warn_unused(scree_scene_reader *reader, const scree_rules_names
 
 // ------------------------------------------------------------------------------------------------------- contact laws
 
-/// Damping by one of two keys, a model that exists, a switch that is 0 or 1.
+/// Parameters that the model has no use for, or cannot do without.
+static void check_model(scree_scene_reader *reader, const scree_yaml_node *law, int64_t index)
+{
+    const char *name = scree_rules_text(law, "model");
+    const int32_t model = name != NULL ? scree_force_model_find(name) : -1;
+    if (model < 0) return;
+    int32_t num_parameters;
+    const scree_force_parameter *parameters = scree_force_parameters(&num_parameters);
+    for (int32_t k = 0; k < num_parameters; ++k)
+    {
+        const char *key = parameters[k].name;
+        double value = 0;
+        const bool is_known = scree_rules_number(law, key, &value);
+        if ((parameters[k].used_by >> model & 1) == 0 && is_known && !isnan(value))
+            scree_scene_fault(reader, scree_rules_place(law, key),
+                              "%s of contact_laws.%lld has no effect with model %s; remove it, or choose a model that "
+                              "uses it",
+                              key, (long long)index, name);
+        if ((parameters[k].needed_by >> model & 1) != 0 && is_known && isnan(value))
+            scree_scene_fault(reader, scree_rules_place(law, key),
+                              "contact_laws.%lld has no %s, which model %s needs; add it", (long long)index, key, name);
+    }
+}
+
+/// A rolling resistance has its coefficients, and only then.
+static void check_rolling(scree_scene_reader *reader, const scree_yaml_node *law, int64_t index)
+{
+    const char *kind = scree_rules_text(law, "rolling_resistance");
+    double coefficient, damping;
+    if (kind == NULL || !scree_rules_number(law, "rolling_friction_coefficient", &coefficient)) return;
+    const bool is_none = strcmp(kind, "none") == 0;
+    if (is_none != isnan(coefficient))
+        scree_scene_fault(reader, scree_rules_place(law, "rolling_friction_coefficient"),
+                          is_none ? "contact_laws.%lld has a rolling_friction_coefficient, but no rolling_resistance; "
+                                    "set it to constant or spring, or remove the coefficient"
+                                  : "contact_laws.%lld has a rolling_resistance, but no rolling_friction_coefficient; "
+                                    "add it",
+                          (long long)index);
+    if (strcmp(kind, "spring") != 0 && scree_rules_number(law, "rolling_damping_ratio", &damping) && damping != 0)
+        scree_scene_fault(reader, scree_rules_place(law, "rolling_damping_ratio"),
+                          "rolling_damping_ratio of contact_laws.%lld has no effect with rolling_resistance %s; remove "
+                          "it, or choose spring",
+                          (long long)index, kind);
+}
+
+/// Damping by one of two keys, a switch that is 0 or 1, parameters of the model.
 static void check_law(scree_scene_reader *reader, const scree_yaml_node *law, int64_t index)
 {
     double restitution, damping, spring;
@@ -153,15 +198,8 @@ static void check_law(scree_scene_reader *reader, const scree_yaml_node *law, in
         scree_scene_fault(reader, scree_rules_place(law, "tangential_spring"),
                           "tangential_spring of contact_laws.%lld is %g; it must be 0 or 1", (long long)index, spring);
 
-    const char *model = scree_rules_text(law, "model");
-    int32_t num_models = 0;
-    const scree_force_model *models = scree_force_models(&num_models);
-    bool is_known = model == NULL;
-    for (int32_t k = 0; k < num_models; ++k) is_known |= model != NULL && strcmp(model, models[k].name) == 0;
-    if (!is_known)
-        scree_scene_fault(reader, scree_rules_place(law, "model"),
-                          "model of contact_laws.%lld is \"%.255s\", which is not a force model; known is \"%s\"",
-                          (long long)index, model, models[0].name);
+    check_rolling(reader, law, index);
+    check_model(reader, law, index);
 }
 
 /// Pairs of materials as a square of flags.

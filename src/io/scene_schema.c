@@ -2,6 +2,8 @@
 /// The tables of all keys of a scene.
 #include "io/scene_schema.h"
 
+#include "forces/force_parameters.h"
+
 #include <string.h>
 
 #define COUNT(array) ((int)(sizeof(array) / sizeof((array)[0])))
@@ -76,58 +78,44 @@ static const scree_scene_section material_section = {"materials[]", "Solids that
 
 // ------------------------------------------------------------------------------------------------------- contact laws
 
+static const char *const force_model_names[] = {
+#define SCREE_MODEL_NAME(model, name, exponent, text, source) name,
+    SCREE_FORCE_MODELS(SCREE_MODEL_NAME)
+#undef SCREE_MODEL_NAME
+};
 static const cyaml_strval_t shear_mixings[] = {{"mindlin", SCREE_SHEAR_MINDLIN}, {"bilock", SCREE_SHEAR_BILOCK}};
+static const cyaml_strval_t rolling_resistances[] = {
+    {"none", SCREE_ROLLING_NONE}, {"constant", SCREE_ROLLING_CONSTANT}, {"spring", SCREE_ROLLING_SPRING}};
+#define LAW_NUMBER(name, unit, default_text, special, min, max, used_by, needed_by, meaning) \
+    NUMBER(scree_contact_law_def, name),
 static const cyaml_schema_field_t law_fields[] = {
     CYAML_FIELD_SEQUENCE_FIXED("materials", CYAML_FLAG_DEFAULT, scree_contact_law_def, materials, &name_value, 2),
     TEXT(scree_contact_law_def, model),
-    NUMBER(scree_contact_law_def, friction_coefficient),
-    NUMBER(scree_contact_law_def, restitution_coefficient),
-    NUMBER(scree_contact_law_def, damping_ratio),
-    NUMBER(scree_contact_law_def, stiffness_factor),
-    NUMBER(scree_contact_law_def, tangential_spring),
+    SCREE_FORCE_PARAMETERS(LAW_NUMBER) WORD(scree_contact_law_def, rolling_resistance, rolling_resistances),
     TRUTH(scree_contact_law_def, attraction),
     TRUTH(scree_contact_law_def, contact_moments),
     WORD(scree_contact_law_def, shear_mixing, shear_mixings),
     CYAML_FIELD_END};
+#define LAW_KEY(key_name, key_unit, key_default, key_special, key_min, key_max, used_by, needed_by, key_meaning) \
+    {.name = #key_name,                                                                                          \
+     .unit = key_unit,                                                                                           \
+     .default_text = key_default,                                                                                \
+     .special = key_special,                                                                                     \
+     .min = key_min,                                                                                             \
+     .max = key_max,                                                                                             \
+     .meaning = key_meaning},
 static const scree_scene_key law_keys[] = {
     {.name = "materials", .rule = SCREE_TEXT_NAME, .meaning = "names of the two materials, in any order"},
     {.name = "model",
-     .default_text = "volumetric_hertz_mindlin",
-     .rule = SCREE_TEXT_NAME,
-     .meaning = "force law, a name of the registry of force models"},
-    {.name = "friction_coefficient",
-     .unit = "1",
-     .min = 0,
-     .max = 10,
-     .meaning = "largest tangential over normal force; 0: no friction"},
-    {.name = "restitution_coefficient",
-     .unit = "1",
-     .default_text = "auto",
-     .special = "auto",
-     .min = 0.01,
-     .max = 1,
-     .meaning = "speed after over speed before a central impact of spheres; give this or damping_ratio. Without "
-                "attraction the fit behind it is good to 4e-4 from 0.2 to 0.9"},
-    {.name = "damping_ratio",
-     .unit = "1",
-     .default_text = "auto",
-     .special = "auto",
-     .min = 0,
-     .max = 10,
-     .meaning = "damping coefficient g of normal and tangential forces; auto: from restitution_coefficient"},
-    {.name = "stiffness_factor",
-     .unit = "1",
-     .default_text = "0.7522527780636751",
-     .min = 1e-3,
-     .max = 1e3,
-     .meaning = "factor of E* sqrt(V d) in the volumetric law; the default 4/(3 sqrt(pi)) reproduces Hertz for "
-                "spheres, Nassauer & Kuna (2013) report 0.62 for polyhedra"},
-    {.name = "tangential_spring",
-     .unit = "1",
-     .default_text = "1",
-     .min = 0,
-     .max = 1,
-     .meaning = "1: tangential spring with history, 0: tangential damping alone"},
+     .default_text = "hertz_mindlin",
+     .rule = SCREE_TEXT_WORD,
+     .words = force_model_names,
+     .num_words = COUNT(force_model_names),
+     .meaning = "normal force; see the table below"},
+    SCREE_FORCE_PARAMETERS(LAW_KEY) // what a model does not use is refused
+    {.name = "rolling_resistance",
+     .default_text = "none",
+     .meaning = "moment against rolling after Ai et al. (2011): constant (type A) or a spring with limit (type C)"},
     {.name = "attraction",
      .default_text = "false",
      .meaning = "whether the total normal force may turn attractive when bodies separate"},
@@ -639,3 +627,5 @@ static const cyaml_schema_value_t root_value = {CYAML_VALUE_MAPPING(CYAML_FLAG_P
 
 const scree_scene_section *scree_scene_root(void) { return &root_section; }
 const cyaml_schema_value_t *scree_scene_root_value(void) { return &root_value; }
+
+const scree_scene_section *scree_scene_law_section(void) { return &law_section; }

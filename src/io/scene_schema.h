@@ -44,6 +44,8 @@ typedef struct scree_scene_section
 
 /// The whole scene.
 const scree_scene_section *scree_scene_root(void);
+/// Contact laws, whose models have a table of their own.
+const scree_scene_section *scree_scene_law_section(void);
 /// The schema of it for libcyaml.
 const cyaml_schema_value_t *scree_scene_root_value(void);
 

@@ -1,6 +1,6 @@
 // Two sphere meshes pressed together: overlap and force converge to those of true spheres as the meshes are refined.
 #include "contact/overlap.h"
-#include "forces/volumetric_kernel.h"
+#include "forces/contact_law_kernel.h"
 #include "harness.h"
 #include "polyhedra/generate.h"
 
@@ -53,7 +53,7 @@ static void measure(int32_t num_triangles, double indentation, double *volume_er
             kinematics.indentation = result.indentation;
             kinematics.normal = scree_vec3_negate(result.normal);
             kinematics.effective_mass = 1;
-            scree_volumetric_force(&law, &kinematics, &force);
+            scree_contact_law(&law, &kinematics, &force);
             sum_volume += pow((double)result.volume / lens - 1, 2);
             sum_force += pow(-(double)force.normal_force.z / hertz - 1, 2);
         }

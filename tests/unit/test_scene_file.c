@@ -18,9 +18,11 @@ static const char full_text[] =
     "  - {name: rock, density: 2700, youngs_modulus: 2e7, poisson_ratio: 0.25, shear_modulus: 1.5e7}\n"
     "  - {name: plate, density: 7850, youngs_modulus: 1e8, poisson_ratio: 0.125}\n"
     "contact_laws:\n"
-    "  - {materials: [rock, rock], friction_coefficient: 0.39, damping_ratio: 0.5}\n"
+    "  - {materials: [rock, rock], model: linear_spring, friction_coefficient: 0.39, damping_ratio: 0.5, "
+    "tangential_damping_ratio: 0.25, normal_stiffness: 2e5, tangential_stiffness: 1e5, rolling_resistance: spring, "
+    "rolling_friction_coefficient: 0.125, rolling_damping_ratio: 0.75}\n"
     "  - materials: [plate, rock]\n"
-    "    model: volumetric_hertz_mindlin\n"
+    "    model: hertz_mindlin\n"
     "    friction_coefficient: 0.75\n"
     "    restitution_coefficient: 0.3125\n"
     "    stiffness_factor: 0.62\n"
@@ -112,11 +114,16 @@ static void check_full_definitions(const scree_scene *s)
     SCREE_CHECK_INT(s->num_contact_laws, 2);
     const scree_contact_law_def *law = s->contact_laws + 1;
     SCREE_CHECK(strcmp(law->materials[0], "plate") == 0 && strcmp(law->materials[1], "rock") == 0);
-    SCREE_CHECK(strcmp(law->model, "volumetric_hertz_mindlin") == 0);
+    SCREE_CHECK(strcmp(law->model, "hertz_mindlin") == 0);
     SCREE_CHECK(law->friction_coefficient == 0.75 && law->restitution_coefficient == 0.3125);
     SCREE_CHECK(isnan(law->damping_ratio) && law->stiffness_factor == 0.62 && law->tangential_spring == 0);
     SCREE_CHECK(law->attraction && law->shear_mixing == SCREE_SHEAR_BILOCK);
-    SCREE_CHECK(law[-1].damping_ratio == 0.5 && isnan(law[-1].restitution_coefficient));
+    --law;
+    SCREE_CHECK(strcmp(law->model, "linear_spring") == 0 && law->normal_stiffness == 2e5);
+    SCREE_CHECK(law->tangential_stiffness == 1e5 && law->tangential_damping_ratio == 0.25);
+    SCREE_CHECK(law->damping_ratio == 0.5 && isnan(law->restitution_coefficient));
+    SCREE_CHECK(law->rolling_resistance == SCREE_ROLLING_SPRING && law->rolling_friction_coefficient == 0.125);
+    SCREE_CHECK(law->rolling_damping_ratio == 0.75);
     SCREE_CHECK_INT(s->num_shapes, 6);
     SCREE_CHECK(s->shapes[0].source == SCREE_SHAPE_ROCK && equal3(s->shapes[0].size, 0.5, 0.5, 0.5));
     SCREE_CHECK(s->shapes[0].triangles == 40 && s->shapes[0].seed == 7 && s->shapes[0].file[0] == '\0');
@@ -189,9 +196,9 @@ static void test_defaults(void)
     SCREE_CHECK(isnan(s->time.step) && s->time.step_fraction == 0.5);
     SCREE_CHECK(isnan(s->materials[0].shear_modulus));
     const scree_contact_law_def *law = s->contact_laws;
-    SCREE_CHECK(strcmp(law->model, "volumetric_hertz_mindlin") == 0 && isnan(law->restitution_coefficient));
-    // 4/(3 sqrt(pi))
-    SCREE_CHECK_CLOSE(law->stiffness_factor, 4.0 / (3.0 * sqrt(acos(-1.0))), 2e-16);
+    SCREE_CHECK(strcmp(law->model, "hertz_mindlin") == 0 && isnan(law->restitution_coefficient));
+    SCREE_CHECK(isnan(law->stiffness_factor) && isnan(law->normal_stiffness) && isnan(law->tangential_stiffness));
+    SCREE_CHECK(law->rolling_resistance == SCREE_ROLLING_NONE && isnan(law->rolling_friction_coefficient));
     SCREE_CHECK(law->tangential_spring == 1 && !law->attraction && law->shear_mixing == SCREE_SHEAR_MINDLIN);
     SCREE_CHECK(equal3(s->shapes[0].size, 1, 1, 1) && s->shapes[0].triangles == 0);
     SCREE_CHECK(s->particles[0].size.distribution == SCREE_SIZE_AS_SHAPE && s->particles[0].spacing == 1.05);
@@ -323,6 +330,57 @@ static char *with_line(int line, const char *replacement)
     return text;
 }
 
+static void test_faults_of_contact_laws(void)
+{
+    static const struct
+    {
+        int line;
+        const char *replacement, *message;
+    } cases[] = {
+        {8, "  - {materials: [rock, rock], friction_coefficient: 0.39}",
+         "test.yaml:8: contact_laws.0 has neither restitution_coefficient nor damping_ratio"},
+        {8, "  - {materials: [rock, rock], friction_coefficient: 0, damping_ratio: 0, restitution_coefficient: 1}",
+         "contact_laws.0 has both restitution_coefficient and damping_ratio"},
+        {8, "  - {materials: [rock, rick], friction_coefficient: 0, damping_ratio: 0}",
+         "test.yaml:8: materials.1 of contact_laws.0 is \"rick\", which is not among the materials; did you mean "
+         "\"rock\"?"},
+        {8, "  - {materials: [rock, plate], friction_coefficient: 0, damping_ratio: 0}",
+         "contact_laws.1 is for \"plate\" and \"rock\", and so is contact_laws.0"},
+        {8, "", "contact_laws has none for \"rock\" and \"rock\""},
+        {8,
+         "  - {materials: [rock, rock], model: linear_spring, friction_coefficient: 0, damping_ratio: 0, "
+         "stiffness_factor: 1}",
+         "test.yaml:8: stiffness_factor of contact_laws.0 has no effect with model linear_spring; remove it"},
+        {8, "  - {materials: [rock, rock], model: linear_spring, friction_coefficient: 0, damping_ratio: 0}",
+         "test.yaml:8: contact_laws.0 has no normal_stiffness, which model linear_spring needs; add it"},
+        {8, "  - {materials: [rock, rock], friction_coefficient: 0, damping_ratio: 0, normal_stiffness: 1e5}",
+         "normal_stiffness of contact_laws.0 has no effect with model hertz_mindlin"},
+        {8, "  - {materials: [rock, rock], friction_coefficient: 0, damping_ratio: 0, rolling_resistance: constant}",
+         "contact_laws.0 has a rolling_resistance, but no rolling_friction_coefficient"},
+        {8, "  - {materials: [rock, rock], friction_coefficient: 0, damping_ratio: 0, rolling_friction_coefficient: 1}",
+         "contact_laws.0 has a rolling_friction_coefficient, but no rolling_resistance"},
+        {8,
+         "  - {materials: [rock, rock], friction_coefficient: 0, damping_ratio: 0, rolling_resistance: constant, "
+         "rolling_friction_coefficient: 1, rolling_damping_ratio: 1}",
+         "rolling_damping_ratio of contact_laws.0 has no effect with rolling_resistance constant"},
+        {10, "    model: hook",
+         "test.yaml:10: model of contact_laws.1 is \"hook\"; it must be hertz_mindlin or linear_spring"},
+        {12, "    restitution_coefficient: 1.3",
+         "test.yaml:12: restitution_coefficient of contact_laws.1 is 1.3; it must be a number in [0.01, 1] or auto"},
+        {14, "    tangential_spring: 0.5", "tangential_spring of contact_laws.1 is 0.5; it must be 0 or 1"},
+        {15, "    attraction: yes", "attraction of contact_laws.1 is \"yes\"; it must be true or false"},
+        {16, "    shear_mixing: bilok", "it must be mindlin or bilock; did you mean \"bilock\"?"},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; ++k)
+    {
+        char *text = with_line(cases[k].line, cases[k].replacement);
+        char *messages = messages_of(text, NULL, SCREE_INVALID_INPUT);
+        SCREE_CHECK_CONTAINS(messages, cases[k].message);
+        free(messages);
+        free(text);
+    }
+}
+
 static void test_faults_of_values(void)
 {
     static const struct
@@ -350,22 +408,6 @@ static void test_faults_of_values(void)
         {6, "  - {name: 12, density: 1, youngs_modulus: 1e8, poisson_ratio: 0.1}",
          "name of materials.1 is 12; it must be"},
         {6, "  - {name: a.b, density: 1, youngs_modulus: 1e8, poisson_ratio: 0.1}", "name of materials.1 is \"a.b\""},
-        {8, "  - {materials: [rock, rock], friction_coefficient: 0.39}",
-         "test.yaml:8: contact_laws.0 has neither restitution_coefficient nor damping_ratio"},
-        {8, "  - {materials: [rock, rock], friction_coefficient: 0, damping_ratio: 0, restitution_coefficient: 1}",
-         "contact_laws.0 has both restitution_coefficient and damping_ratio"},
-        {8, "  - {materials: [rock, rick], friction_coefficient: 0, damping_ratio: 0}",
-         "test.yaml:8: materials.1 of contact_laws.0 is \"rick\", which is not among the materials; did you mean "
-         "\"rock\"?"},
-        {8, "  - {materials: [rock, plate], friction_coefficient: 0, damping_ratio: 0}",
-         "contact_laws.1 is for \"plate\" and \"rock\", and so is contact_laws.0"},
-        {8, "", "contact_laws has none for \"rock\" and \"rock\""},
-        {10, "    model: hook", "test.yaml:10: model of contact_laws.1 is \"hook\", which is not a force model"},
-        {12, "    restitution_coefficient: 1.3",
-         "test.yaml:12: restitution_coefficient of contact_laws.1 is 1.3; it must be a number in [0.01, 1] or auto"},
-        {14, "    tangential_spring: 0.5", "tangential_spring of contact_laws.1 is 0.5; it must be 0 or 1"},
-        {15, "    attraction: yes", "attraction of contact_laws.1 is \"yes\"; it must be true or false"},
-        {16, "    shear_mixing: bilok", "it must be mindlin or bilock; did you mean \"bilock\"?"},
         {18, "  - {name: rock, source: rock, size: 0.5}", "test.yaml:18: triangles of shapes.0 is 0; a rock needs"},
         {18, "  - {name: rock, source: rock, triangles: 4.5}", "triangles of shapes.0 is 4.5; it must be an integer"},
         {19, "  - {name: slab, source: box, size: [1, 0, 1]}", "size.1 of shapes.1 is 0; it must be above 0"},
@@ -716,6 +758,7 @@ int main(void)
     SCREE_RUN(test_text_with_defaults_reads_the_same);
     SCREE_RUN(test_overrides);
     SCREE_RUN(test_faults_of_overrides);
+    SCREE_RUN(test_faults_of_contact_laws);
     SCREE_RUN(test_faults_of_values);
     SCREE_RUN(test_faults_of_true_spheres);
     SCREE_RUN(test_warnings_of_keys_without_effect);

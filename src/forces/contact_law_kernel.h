@@ -1,0 +1,39 @@
+/// \file contact_law_kernel.h
+/// Force law of one contact: the elastic normal force of the model, then what all models share.
+///
+///     F_n = F + 2 g sqrt(m* k_n) v_n, never attractive unless the law allows it      v_n: speed of approach
+///     k_t = r k_n, r = 4 G*/E* (k_n = 2 E* a and k_t = 8 G* a on a contact of radius a) or as given
+///
+/// then friction, and where the law has them the moments of the contact area and rolling resistance.
+#ifndef SCREE_CONTACT_LAW_KERNEL_H
+#define SCREE_CONTACT_LAW_KERNEL_H
+
+#include "forces/contact_moment_kernel.h"
+#include "forces/friction_kernel.h"
+#include "forces/hertz_mindlin_kernel.h"
+#include "forces/linear_spring_kernel.h"
+#include "forces/rolling_kernel.h"
+
+SCREE_FN void scree_contact_law(const scree_force_law *law, const scree_contact_kinematics *k, scree_contact_force *f)
+{
+    if (law->model == SCREE_MODEL_LINEAR_SPRING) scree_linear_spring(law, k, f);
+    else scree_hertz_mindlin(law, k, f);
+    f->tangential_stiffness = law->tangential_over_normal * f->normal_stiffness;
+
+    const scree_real approach = -scree_vec3_dot(k->relative_velocity, k->normal);
+    const scree_real damping = 2 * law->damping_ratio * scree_sqrt(k->effective_mass * f->normal_stiffness);
+    scree_real normal_force = f->elastic_force + damping * approach;
+    if (normal_force < 0 && !law->has_attraction) normal_force = 0;
+    f->normal_force = scree_vec3_scale(k->normal, normal_force);
+
+    const scree_real pressing = scree_max(normal_force, 0);
+    scree_friction(law, k, pressing, f);
+    f->moment = scree_vec3_zero();
+    f->torsion = 0;
+    f->rolling_moment = scree_vec3_zero();
+    f->is_turning = false;
+    if (law->has_moments && k->radius > 0) scree_contact_moment(law, k, pressing, f);
+    if (law->rolling != SCREE_ROLLING_NONE) scree_rolling_resistance(law, k, pressing, f);
+}
+
+#endif

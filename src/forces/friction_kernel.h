@@ -1,0 +1,43 @@
+/// \file friction_kernel.h
+/// Tangential force: spring with history, dashpot, Coulomb limit. The same for all models.
+///
+///     F_s += -k_t dx_t, scaled by k_t/k_t_old while unloading; F_t = F_s - 2 g sqrt(m* k_t) v_t is capped at mu F_n
+///
+/// Bilock (2020), eqs. 4.8 and 4.9. History is turned into the present tangent plane before it is added to, and reset
+/// to the Coulomb value on slip.
+#ifndef SCREE_FRICTION_KERNEL_H
+#define SCREE_FRICTION_KERNEL_H
+
+#include "forces/contact_kinematics.h"
+
+/// Fills the tangential fields of *f.
+SCREE_FN void scree_friction(const scree_force_law *law, const scree_contact_kinematics *k, scree_real normal_force,
+                             scree_contact_force *f)
+{
+    const scree_vec3 v = k->relative_velocity;
+    const scree_vec3 v_t = scree_vec3_add_scaled(v, k->normal, -scree_vec3_dot(v, k->normal));
+    const scree_real k_t = f->tangential_stiffness;
+    scree_vec3 spring = scree_vec3_zero();
+    if (law->has_tangential_spring)
+    {
+        spring = scree_rotate_into_plane(k->spring_force, k->normal);
+        spring = scree_vec3_scale(spring, scree_unloading_ratio(k, f));
+        spring = scree_vec3_add_scaled(spring, v_t, -k_t * k->time_step);
+    }
+    const scree_real damping = 2 * law->tangential_damping_ratio * scree_sqrt(k->effective_mass * k_t);
+    scree_vec3 force = scree_vec3_add_scaled(spring, v_t, -damping);
+
+    const scree_real limit = law->friction_coefficient * normal_force;
+    const scree_real squared = scree_vec3_dot(force, force);
+    f->is_slipping = squared > limit * limit;
+    if (f->is_slipping)
+    {
+        force = scree_vec3_scale(force, limit / scree_sqrt(squared));
+        if (law->has_tangential_spring) spring = force;
+    }
+    f->tangential_force = force;
+    f->spring_force = spring;
+    f->spring_energy = k_t > 0 ? scree_vec3_dot(spring, spring) / (2 * k_t) : 0;
+}
+
+#endif

@@ -1,6 +1,6 @@
 /// \file io.h
-/// The folder of a run: scene.yaml, series.csv, frames.vtkhdf, walls.vtkhdf, contacts.vtkhdf, checkpoint.h5,
-/// summary.json. Formats: docs/format_hdf5.md.
+/// The folder of a run: scene.yaml, series.csv, frames.vtkhdf, walls.vtkhdf, contacts.vtkhdf, fields.vtkhdf,
+/// checkpoint.h5, summary.json. Formats: docs/format_hdf5.md.
 /// Whole files are written to a temporary name and renamed; files that grow stay readable after a kill at any moment.
 #ifndef SCREE_IO_H
 #define SCREE_IO_H
@@ -43,6 +43,11 @@ extern "C"
     /// Everything the state is, to checkpoint.h5. SCREE_WRITE_FAILED leaves the checkpoint there was.
     scree_status scree_run_folder_write_checkpoint(scree_run_folder *folder, const scree_simulation *simulation,
                                                    scree_report *report);
+
+    /// fields.vtkhdf, the averages of section "fields" of the scene. Nothing happens unless a period has been completed
+    /// since it was last written. SCREE_WRITE_FAILED leaves the old file.
+    scree_status scree_run_folder_write_fields(scree_run_folder *folder, const scree_simulation *simulation,
+                                               scree_report *report);
 
     /// What summary.json tells beyond the state.
     typedef struct scree_run_result

@@ -199,6 +199,20 @@ extern "C"
         int64_t bins;    ///< default 20
     } scree_repose_def;
 
+    /// Averages over time, kept while the run goes on.
+    typedef struct scree_fields_def
+    {
+        bool measure;
+        scree_region_def region;       ///< box of the grid
+        double cells[3];               ///< along x, y, z; whole numbers
+        double from;                   ///< [s] when the first period begins
+        double period;                 ///< [s]; auto: one revolution of the wall
+        char *wall;                    ///< "" if the period is given
+        int64_t samples;               ///< of the fields in a period, default 200
+        int64_t energy_bins;           ///< of the energies of collisions; default 0: not measured
+        double energy_min, energy_max; ///< [J] range of the bins
+    } scree_fields_def;
+
     typedef struct scree_solver_def
     {
         double skin;          ///< [1] share of the mean bounding radius added to the boxes; default 0.1
@@ -223,6 +237,7 @@ extern "C"
         scree_solver_def solver;
         scree_output_def output;
         scree_repose_def repose;
+        scree_fields_def fields;
     } scree_scene;
 
 #ifdef __cplusplus

@@ -19,7 +19,8 @@ static const char usage[] =
     "usage: scree run [options] SCENE\n"
     "\n"
     "Runs a scene and writes everything into one folder: scene.yaml (as used), series.csv (energies and counts over\n"
-    "time), frames.vtkhdf, walls.vtkhdf and contacts.vtkhdf (for ParaView), checkpoint.h5, summary.json.\n"
+    "time), frames.vtkhdf, walls.vtkhdf and contacts.vtkhdf (for ParaView), checkpoint.h5, summary.json, and\n"
+    "fields.vtkhdf if the scene measures fields.\n"
     "\n"
     "  -o FOLDER         where to; default runs/NAME, NAME being that of the scene\n"
     "  --restart         goes on from the checkpoint in the folder; the result is that of the unbroken run, bit for "
@@ -274,6 +275,7 @@ static scree_status write_outputs(run_state *run, int64_t step, bool is_last)
         status = scree_run_folder_write_series(run->folder, run->simulation, &run->report);
     if (status == SCREE_OK && (is_due(step, time_step, output->frames) || (is_last && output->frames > 0)))
         status = scree_run_folder_write_frame(run->folder, run->simulation, &run->report);
+    if (status == SCREE_OK) status = scree_run_folder_write_fields(run->folder, run->simulation, &run->report);
     if (status == SCREE_OK && output->checkpoint > 0 &&
         (is_last || (step > 0 && is_due(step, time_step, output->checkpoint))))
         status = scree_run_folder_write_checkpoint(run->folder, run->simulation, &run->report);

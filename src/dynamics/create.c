@@ -300,7 +300,9 @@ scree_status scree_simulation_create(scree_simulation **simulation, const scree_
     if (status == SCREE_OK) status = choose_time_step(s, report);
     if (status == SCREE_OK) status = scree_step_buffers_create(s);
     if (status == SCREE_OK) status = scree_wall_axes_create(s);
+    if (status == SCREE_OK) status = scree_averages_create(s, report);
     if (status == SCREE_OK) status = start(s, report);
+    if (status == SCREE_OK) status = scree_averages_restart(s);
     if (status != SCREE_OK)
     {
         if (scree_report_num_faults(report) == 0) scree_report_add(report, "%s", scree_status_text(status));
@@ -332,6 +334,7 @@ void scree_simulation_destroy(scree_simulation *simulation)
     scree_step_buffers_destroy(simulation);
     scree_particles_destroy(&simulation->particles);
     scree_wall_loads_destroy(&simulation->wall_loads);
+    scree_averages_destroy(&simulation->averages);
     scree_contact_list_destroy(&simulation->contacts);
     scree_contact_list_destroy(&simulation->old_contacts);
     scree_broad_phase_destroy(&simulation->broad_phase);

@@ -68,6 +68,7 @@ scree_status scree_simulation_step(scree_simulation *simulation, scree_report *r
         correct(simulation);
         status = scree_account_work(simulation);
         if (status == SCREE_OK) status = scree_account_wall_loads(simulation);
+        if (status == SCREE_OK) status = scree_update_averages(simulation);
     }
     const int64_t unstable = status == SCREE_OK ? find_unstable(&simulation->particles) : -1;
     if (unstable >= 0)

@@ -6,6 +6,7 @@
 #include "bvh/broad_phase.h"
 #include "contact/contact_list.h"
 #include "contact/narrow_phase.h"
+#include "dynamics/averages.h"
 #include "dynamics/particles.h"
 #include "dynamics/wall_loads.h"
 #include "dynamics/walls.h"
@@ -34,6 +35,7 @@ struct scree_simulation
     scree_contact_list contacts; ///< of the present step
     scree_energies energies;     ///< accumulated parts; see simulation.h
     scree_counters counters;
+    scree_averages averages;     ///< fields, collisions, works; nothing if the scene measures none
     scree_wall_loads wall_loads; ///< torques, forces and work of moving walls
 
     // scratch

@@ -4,6 +4,7 @@
 #define SCREE_FORCES_H
 
 #include "core/launch_cpu.h"
+#include "forces/collision_kernel.h"
 #include "forces/contact_force_kernel.h"
 #include "forces/gather_kernel.h"
 #include "forces/wall_load_kernel.h"
@@ -11,6 +12,7 @@
 
 SCREE_DECLARE_LAUNCH(scree_contact_force) ///< over contacts
 SCREE_DECLARE_LAUNCH(scree_gather)        ///< over particles
+SCREE_DECLARE_LAUNCH(scree_collision)     ///< over contacts
 SCREE_DECLARE_LAUNCH(scree_wall_load)     ///< over blocks of SCREE_WALL_LOAD_BLOCK contacts
 SCREE_DECLARE_LAUNCH(scree_work)          ///< over blocks of SCREE_WORK_BLOCK contacts
 

@@ -1,4 +1,5 @@
 #include "core/launch_cuda.cuh"
+#include "forces/collision_kernel.h"
 #include "forces/contact_force_kernel.h"
 #include "forces/gather_kernel.h"
 #include "forces/wall_load_kernel.h"
@@ -6,5 +7,6 @@
 
 SCREE_DEFINE_LAUNCH(scree_contact_force)
 SCREE_DEFINE_LAUNCH(scree_gather)
+SCREE_DEFINE_LAUNCH(scree_collision)
 SCREE_DEFINE_LAUNCH(scree_wall_load)
 SCREE_DEFINE_LAUNCH(scree_work)

@@ -6,6 +6,7 @@
 /// so a damaged file is refused. state_hash: that of scree_simulation_hash(), for comparison by eye.
 #define _POSIX_C_SOURCE 200809L
 #include "core/hash.h"
+#include "io/averages_hdf5.h"
 #include "io/hdf5_file.h"
 #include "io/run_folder.h"
 
@@ -25,9 +26,9 @@ enum
 /// More than any memory holds: the number in the file is not to be believed.
 #define MAX_CONTACTS ((int64_t)1 << 40)
 
-_Static_assert(offsetof(scree_particles, num_particles) == 0, "put_arrays() reads the number of items there");
-_Static_assert(offsetof(scree_contact_list, num_contacts) == 0, "put_arrays() reads the number of items there");
-_Static_assert(offsetof(scree_wall_loads, num_walls) == 0, "put_arrays() reads the number of items there");
+_Static_assert(offsetof(scree_particles, num_particles) == 0, "the number of items is read there");
+_Static_assert(offsetof(scree_contact_list, num_contacts) == 0, "the number of items is read there");
+_Static_assert(offsetof(scree_wall_loads, num_walls) == 0, "the number of items is read there");
 
 // ---- hashes
 
@@ -150,37 +151,6 @@ static bool put_row(hid_t file, const scree_series_row *row)
     return is_done;
 }
 
-static bool put_array(hid_t group, const scree_field *field, const void *array, int64_t num)
-{
-    const hsize_t size[2] = {(hsize_t)num, (hsize_t)field->num_components};
-    const hid_t space = H5Screate_simple(field->num_components > 1 ? 2 : 1, size, NULL);
-    const hid_t properties = scree_hdf5_properties(H5P_DATASET_CREATE);
-    const hid_t dataset =
-        H5Dcreate2(group, field->name, scree_hdf5_file_type(field->type), space, H5P_DEFAULT, properties, H5P_DEFAULT);
-    H5Pclose(properties);
-    H5Sclose(space);
-    if (dataset < 0 || !scree_hdf5_describe(dataset, field)) return false;
-    const hid_t type = scree_hdf5_memory_type(field->type);
-    // left open on failure: closing would clear the reason
-    if (num > 0 && H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, array) < 0) return false;
-    return H5Dclose(dataset) >= 0;
-}
-
-/// `structure` is a scree_particles, scree_contact_list or scree_wall_loads: the number of items is their first member.
-static bool put_arrays(hid_t file, const char *name, const scree_field *fields, int num_fields, const void *structure)
-{
-    int64_t num;
-    memcpy(&num, structure, sizeof num);
-    const hid_t properties = scree_hdf5_properties(H5P_GROUP_CREATE);
-    const hid_t group = H5Gcreate2(file, name, H5P_DEFAULT, properties, H5P_DEFAULT);
-    H5Pclose(properties);
-    bool is_done = group >= 0;
-    for (int k = 0; k < num_fields && is_done; ++k)
-        is_done = put_array(group, fields + k, scree_field_array(fields + k, structure), num);
-    if (is_done) H5Gclose(group);
-    return is_done;
-}
-
 static bool put_head(hid_t file, const scree_simulation *simulation, const scree_series_row *row)
 {
     const int32_t version = FORMAT_VERSION;
@@ -207,9 +177,10 @@ static bool put_everything(hid_t file, const scree_simulation *simulation)
     const scree_field *contact_fields = scree_contact_fields(&num_contact_fields);
     const scree_field *wall_fields = scree_wall_fields(&num_wall_fields);
     return put_head(file, simulation, &row) && put_row(file, &row) &&
-           put_arrays(file, "/particles", particle_fields, num_particle_fields, &simulation->particles) &&
-           put_arrays(file, "/contacts", contact_fields, num_contact_fields, &simulation->contacts) &&
-           put_arrays(file, "/walls", wall_fields, num_wall_fields, &simulation->wall_loads);
+           scree_hdf5_put_arrays(file, "/particles", particle_fields, num_particle_fields, &simulation->particles) &&
+           scree_hdf5_put_arrays(file, "/contacts", contact_fields, num_contact_fields, &simulation->contacts) &&
+           scree_hdf5_put_arrays(file, "/walls", wall_fields, num_wall_fields, &simulation->wall_loads) &&
+           scree_averages_put(file, simulation);
 }
 
 static scree_status save(const scree_simulation *simulation, const char *temporary, scree_report *report)
@@ -265,34 +236,6 @@ static bool get_row(hid_t file, scree_series_row *row)
     bool is_done = group >= 0;
     for (int k = 0; k < num_fields && is_done; ++k)
         is_done = scree_hdf5_get_number(group, fields[k].name, fields[k].type, (char *)row + fields[k].offset);
-    if (group >= 0) H5Gclose(group);
-    return is_done;
-}
-
-static bool get_array(hid_t group, const scree_field *field, void *array, int64_t num)
-{
-    const hid_t dataset = H5Dopen2(group, field->name, H5P_DEFAULT);
-    if (dataset < 0) return false;
-    const hid_t space = H5Dget_space(dataset);
-    hsize_t size[2] = {0, 1};
-    bool is_done = H5Sget_simple_extent_ndims(space) == (field->num_components > 1 ? 2 : 1) &&
-                   H5Sget_simple_extent_dims(space, size, NULL) >= 0 && size[0] == (hsize_t)num &&
-                   size[1] == (hsize_t)field->num_components;
-    H5Sclose(space);
-    if (is_done && num > 0)
-        is_done = H5Dread(dataset, scree_hdf5_memory_type(field->type), H5S_ALL, H5S_ALL, H5P_DEFAULT, array) >= 0;
-    H5Dclose(dataset);
-    return is_done;
-}
-
-static bool get_arrays(hid_t file, const char *name, const scree_field *fields, int num_fields, const void *structure)
-{
-    int64_t num;
-    memcpy(&num, structure, sizeof num);
-    const hid_t group = H5Gopen2(file, name, H5P_DEFAULT);
-    bool is_done = group >= 0;
-    for (int k = 0; k < num_fields && is_done; ++k)
-        is_done = get_array(group, fields + k, scree_field_array(fields + k, structure), num);
     if (group >= 0) H5Gclose(group);
     return is_done;
 }
@@ -390,9 +333,9 @@ static scree_status read_state(hid_t file, loaded_state *state, const char *path
     const scree_field *wall_fields = scree_wall_fields(&num_wall_fields);
     uint64_t hash = 0;
     if (get_row(file, &state->row) &&
-        get_arrays(file, "/particles", particle_fields, num_particle_fields, &state->particles) &&
-        get_arrays(file, "/contacts", contact_fields, num_contact_fields, &state->contacts) &&
-        get_arrays(file, "/walls", wall_fields, num_wall_fields, &state->walls) &&
+        scree_hdf5_get_arrays(file, "/particles", particle_fields, num_particle_fields, &state->particles) &&
+        scree_hdf5_get_arrays(file, "/contacts", contact_fields, num_contact_fields, &state->contacts) &&
+        scree_hdf5_get_arrays(file, "/walls", wall_fields, num_wall_fields, &state->walls) &&
         get_hash(file, "contents_hash", &hash) &&
         hash == contents_hash(&state->row, &state->particles, &state->contacts, &state->walls))
         return SCREE_OK;
@@ -480,7 +423,14 @@ static scree_status load(scree_simulation *simulation, hid_t file, const char *p
     else scree_report_add(report, "%s could not be read: %s", path, scree_status_text(status));
     if (status == SCREE_OK && !check_constants(simulation, &state, path, report)) status = SCREE_INVALID_INPUT;
     if (status == SCREE_OK && !check_values(simulation, &state, path, report)) status = SCREE_READ_FAILED;
-    if (status == SCREE_OK) exchange(simulation, &state);
+    bool has_averages = false;
+    if (status == SCREE_OK)
+        status = scree_averages_get(file, simulation, state.contacts.num_contacts, &has_averages, report);
+    if (status == SCREE_OK)
+    {
+        exchange(simulation, &state);
+        if (!has_averages) status = scree_averages_restart(simulation);
+    }
     scree_particles_destroy(&state.particles);
     scree_contact_list_destroy(&state.contacts);
     scree_wall_loads_destroy(&state.walls);

@@ -106,6 +106,38 @@ static const scree_field wall_fields[] = {
     WALL(revolution_power, "W", "mean power over the last whole revolution, 0 before the first", SCREE_FIELD_DOUBLE),
 };
 
+#define ITEM(structure, member, unit, text, type, components)              \
+    {                                                                      \
+#member, unit, text, type, components, offsetof(structure, member) \
+    }
+
+static const scree_field grid_fields[] = {
+    ITEM(scree_grid_sums, volume, "m^3", "sum over samples of the volume of particles", SCREE_FIELD_DOUBLE, 1),
+    ITEM(scree_grid_sums, mass, "kg", "of their mass", SCREE_FIELD_DOUBLE, 1),
+    ITEM(scree_grid_sums, momentum, "kg m/s", "of their momentum", SCREE_FIELD_DOUBLE, 3),
+    ITEM(scree_grid_sums, speed, "kg m/s", "of mass times speed", SCREE_FIELD_DOUBLE, 1),
+    ITEM(scree_grid_sums, square, "kg m^2/s^2", "of mass times speed squared", SCREE_FIELD_DOUBLE, 1),
+};
+
+static const scree_field spectrum_fields[] = {
+    ITEM(scree_spectrum, count_normal, "1", "collisions by their normal energy", SCREE_FIELD_INT64, 1),
+    ITEM(scree_spectrum, count_tangential, "1", "collisions by their tangential energy", SCREE_FIELD_INT64, 1),
+    ITEM(scree_spectrum, energy_normal, "J", "normal energy of the collisions of count_normal", SCREE_FIELD_DOUBLE, 1),
+    ITEM(scree_spectrum, energy_tangential, "J", "tangential energy of the collisions of count_tangential",
+         SCREE_FIELD_DOUBLE, 1),
+};
+
+static const scree_field collision_fields[] = {
+    ITEM(scree_collisions, normal, "J", "work against the normal forces of the contact so far", SCREE_FIELD_DOUBLE, 1),
+    ITEM(scree_collisions, tangential, "J", "against its tangential forces and moments", SCREE_FIELD_DOUBLE, 1),
+};
+
+static const scree_field period_work_fields[] = {
+    ITEM(scree_period_works, start, "J", "work of the wall at the start of the period under way", SCREE_FIELD_DOUBLE,
+         1),
+    ITEM(scree_period_works, total, "J", "work of the wall in all whole periods", SCREE_FIELD_DOUBLE, 1),
+};
+
 // an array that is added to the particles or contacts must be added to its table, or a restart would lose it
 _Static_assert(sizeof(scree_particles) == offsetof(scree_particles, position) +
                                               sizeof particle_fields / sizeof particle_fields[0] * sizeof(void *),
@@ -116,6 +148,12 @@ _Static_assert(sizeof(scree_contact_list) == offsetof(scree_contact_list, bodies
 _Static_assert(sizeof(scree_wall_loads) ==
                    offsetof(scree_wall_loads, load) + sizeof wall_fields / sizeof wall_fields[0] * sizeof(void *),
                "add the new array to wall_fields");
+_Static_assert(sizeof(scree_grid_sums) ==
+                   offsetof(scree_grid_sums, volume) + sizeof grid_fields / sizeof grid_fields[0] * sizeof(void *),
+               "add the new array to grid_fields");
+_Static_assert(sizeof(scree_spectrum) == offsetof(scree_spectrum, count_normal) +
+                                             sizeof spectrum_fields / sizeof spectrum_fields[0] * sizeof(void *),
+               "add the new array to spectrum_fields");
 
 const scree_field scree_frame_particle = {"particle", "1", "id of the particle", SCREE_FIELD_INT32, 1, 0};
 const scree_field scree_frame_group = {"group",           "1", "index of the particle group in the scene",
@@ -160,6 +198,30 @@ const scree_field *scree_wall_fields(int *num_fields)
 {
     *num_fields = (int)(sizeof wall_fields / sizeof wall_fields[0]);
     return wall_fields;
+}
+
+const scree_field *scree_grid_fields(int *num_fields)
+{
+    *num_fields = (int)(sizeof grid_fields / sizeof grid_fields[0]);
+    return grid_fields;
+}
+
+const scree_field *scree_spectrum_fields(int *num_fields)
+{
+    *num_fields = (int)(sizeof spectrum_fields / sizeof spectrum_fields[0]);
+    return spectrum_fields;
+}
+
+const scree_field *scree_collision_fields(int *num_fields)
+{
+    *num_fields = (int)(sizeof collision_fields / sizeof collision_fields[0]);
+    return collision_fields;
+}
+
+const scree_field *scree_period_work_fields(int *num_fields)
+{
+    *num_fields = (int)(sizeof period_work_fields / sizeof period_work_fields[0]);
+    return period_work_fields;
 }
 
 size_t scree_field_size(const scree_field *field)

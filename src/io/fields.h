@@ -47,6 +47,11 @@ const scree_field *scree_particle_fields(int *num_fields);
 int scree_num_moving_particle_fields(void);
 const scree_field *scree_contact_fields(int *num_fields);
 const scree_field *scree_wall_fields(int *num_fields);
+/// Parts of the averages: scree_grid_sums, scree_spectrum, scree_collisions, scree_period_works.
+const scree_field *scree_grid_fields(int *num_fields);
+const scree_field *scree_spectrum_fields(int *num_fields);
+const scree_field *scree_collision_fields(int *num_fields);
+const scree_field *scree_period_work_fields(int *num_fields);
 /// Arrays of frames.vtkhdf, spheres.vtkhdf, walls.vtkhdf and contacts.vtkhdf; offsets unused.
 extern const scree_field scree_frame_particle, scree_frame_group, scree_frame_speed;
 extern const scree_field scree_frame_radius, scree_frame_velocity;

@@ -261,3 +261,63 @@ bool scree_hdf5_describe(hid_t dataset, const scree_field *field)
     return scree_hdf5_put_text(dataset, "unit", field->unit) &&
            scree_hdf5_put_text(dataset, "description", field->text);
 }
+
+bool scree_hdf5_put_array(hid_t group, const scree_field *field, const void *array, int64_t num)
+{
+    const hsize_t size[2] = {(hsize_t)num, (hsize_t)field->num_components};
+    const hid_t space = H5Screate_simple(field->num_components > 1 ? 2 : 1, size, NULL);
+    const hid_t properties = scree_hdf5_properties(H5P_DATASET_CREATE);
+    const hid_t dataset =
+        H5Dcreate2(group, field->name, scree_hdf5_file_type(field->type), space, H5P_DEFAULT, properties, H5P_DEFAULT);
+    H5Pclose(properties);
+    H5Sclose(space);
+    if (dataset < 0 || !scree_hdf5_describe(dataset, field)) return false;
+    const hid_t type = scree_hdf5_memory_type(field->type);
+    // left open on failure: closing would clear the reason
+    if (num > 0 && H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, array) < 0) return false;
+    return H5Dclose(dataset) >= 0;
+}
+
+bool scree_hdf5_put_arrays(hid_t file, const char *name, const scree_field *fields, int num_fields,
+                           const void *structure)
+{
+    int64_t num;
+    memcpy(&num, structure, sizeof num);
+    const hid_t properties = scree_hdf5_properties(H5P_GROUP_CREATE);
+    const hid_t group = H5Gcreate2(file, name, H5P_DEFAULT, properties, H5P_DEFAULT);
+    H5Pclose(properties);
+    bool is_done = group >= 0;
+    for (int k = 0; k < num_fields && is_done; ++k)
+        is_done = scree_hdf5_put_array(group, fields + k, scree_field_array(fields + k, structure), num);
+    if (is_done) H5Gclose(group);
+    return is_done;
+}
+
+bool scree_hdf5_get_array(hid_t group, const scree_field *field, void *array, int64_t num)
+{
+    const hid_t dataset = H5Dopen2(group, field->name, H5P_DEFAULT);
+    if (dataset < 0) return false;
+    const hid_t space = H5Dget_space(dataset);
+    hsize_t size[2] = {0, 1};
+    bool is_done = H5Sget_simple_extent_ndims(space) == (field->num_components > 1 ? 2 : 1) &&
+                   H5Sget_simple_extent_dims(space, size, NULL) >= 0 && size[0] == (hsize_t)num &&
+                   size[1] == (hsize_t)field->num_components;
+    H5Sclose(space);
+    if (is_done && num > 0)
+        is_done = H5Dread(dataset, scree_hdf5_memory_type(field->type), H5S_ALL, H5S_ALL, H5P_DEFAULT, array) >= 0;
+    H5Dclose(dataset);
+    return is_done;
+}
+
+bool scree_hdf5_get_arrays(hid_t file, const char *name, const scree_field *fields, int num_fields,
+                           const void *structure)
+{
+    int64_t num;
+    memcpy(&num, structure, sizeof num);
+    const hid_t group = H5Gopen2(file, name, H5P_DEFAULT);
+    bool is_done = group >= 0;
+    for (int k = 0; k < num_fields && is_done; ++k)
+        is_done = scree_hdf5_get_array(group, fields + k, scree_field_array(fields + k, structure), num);
+    if (group >= 0) H5Gclose(group);
+    return is_done;
+}

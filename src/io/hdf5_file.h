@@ -48,6 +48,15 @@ bool scree_hdf5_put_number(hid_t object, const char *name, scree_field_type type
 bool scree_hdf5_get_number(hid_t object, const char *name, scree_field_type type, void *value);
 /// Reads an attribute with a text of fewer than `size` characters.
 bool scree_hdf5_get_text(hid_t object, const char *name, char *text, size_t size);
+/// An array of num items, described by its field.
+bool scree_hdf5_put_array(hid_t group, const scree_field *field, const void *array, int64_t num);
+/// Reads it back; false if its type, shape or number is another.
+bool scree_hdf5_get_array(hid_t group, const scree_field *field, void *array, int64_t num);
+/// All arrays of a structure as a group; the number of items is the first member of the structure, an int64_t.
+bool scree_hdf5_put_arrays(hid_t file, const char *name, const scree_field *fields, int num_fields,
+                           const void *structure);
+bool scree_hdf5_get_arrays(hid_t file, const char *name, const scree_field *fields, int num_fields,
+                           const void *structure);
 /// unit and description of a field as attributes of its dataset.
 bool scree_hdf5_describe(hid_t dataset, const scree_field *field);
 

@@ -18,19 +18,20 @@ struct scree_run_folder
     char *path;
     scree_series *series;
     scree_frames *frames; ///< NULL until the first frame
+    int64_t num_periods;  ///< in fields.vtkhdf; 0: there is none
     bool is_restart;
 };
 
 /// Everything a run writes; with --replace these and nothing else are removed.
 static const char *const file_names[] = {
-    "scene.yaml",           "series.csv",          "frames.vtkhdf",      "walls.vtkhdf",
-    "contacts.vtkhdf",      "checkpoint.h5",       "summary.json",       "frames.vtkhdf.tmp",
-    "walls.vtkhdf.tmp",     "contacts.vtkhdf.tmp", "frames.vtkhdf.grow", "walls.vtkhdf.grow",
-    "contacts.vtkhdf.grow", "checkpoint.h5.tmp",   "summary.json.tmp",   "scene.yaml.tmp"};
+    "scene.yaml",        "series.csv",          "frames.vtkhdf",      "walls.vtkhdf",      "contacts.vtkhdf",
+    "checkpoint.h5",     "summary.json",        "fields.vtkhdf",      "frames.vtkhdf.tmp", "fields.vtkhdf.tmp",
+    "walls.vtkhdf.tmp",  "contacts.vtkhdf.tmp", "frames.vtkhdf.grow", "walls.vtkhdf.grow", "contacts.vtkhdf.grow",
+    "checkpoint.h5.tmp", "summary.json.tmp",    "scene.yaml.tmp"};
 enum
 {
     NUM_FILES = sizeof file_names / sizeof file_names[0],
-    NUM_LASTING_FILES = 7
+    NUM_LASTING_FILES = 8
 };
 
 // ---- files
@@ -135,6 +136,17 @@ static bool holds_file(const char *folder, const char *name)
     return is_there;
 }
 
+/// A file that is not there counts as removed.
+static scree_status remove_file(const char *folder, const char *name, scree_report *report)
+{
+    char *path = scree_path_join(folder, name);
+    if (path == NULL) return SCREE_OUT_OF_MEMORY;
+    const bool is_gone = unlink(path) == 0 || errno == ENOENT;
+    const scree_status status = is_gone ? SCREE_OK : system_fault(path, "removed", report);
+    free(path);
+    return status;
+}
+
 static scree_status remove_files(const char *folder, scree_report *report)
 {
     scree_status status = SCREE_OK;
@@ -142,10 +154,7 @@ static scree_status remove_files(const char *folder, scree_report *report)
     {
         // series.csv is locked by a run that is going on; it is emptied when it is opened
         if (strcmp(file_names[k], "series.csv") == 0) continue;
-        char *path = scree_path_join(folder, file_names[k]);
-        if (path == NULL) return SCREE_OUT_OF_MEMORY;
-        if (unlink(path) != 0 && errno != ENOENT) status = system_fault(path, "removed", report);
-        free(path);
+        status = remove_file(folder, file_names[k], report);
     }
     return status;
 }
@@ -210,6 +219,9 @@ scree_status scree_run_folder_open(scree_run_folder **folder, const scree_run_fo
     f->is_restart = def->restart;
     f->path = scree_path_join(path, "");
     status = f->path == NULL ? SCREE_OUT_OF_MEMORY : open_files(f, def, simulation, report);
+    // averages of a time that the checkpoint has not reached are no longer so
+    if (status == SCREE_OK && f->is_restart && simulation->averages.num_periods == 0)
+        status = remove_file(path, "fields.vtkhdf", report);
     // on a restart old frames are shortened now, not when the first new one is due
     const bool has_frames =
         holds_file(path, "frames.vtkhdf") || holds_file(path, "walls.vtkhdf") || holds_file(path, "contacts.vtkhdf");
@@ -240,6 +252,18 @@ scree_status scree_run_folder_write_frame(scree_run_folder *folder, const scree_
     if (folder->frames == NULL)
         status = scree_frames_open(&folder->frames, folder->path, simulation, folder->is_restart, report);
     return status == SCREE_OK ? scree_frames_write(folder->frames, simulation, report) : status;
+}
+
+scree_status scree_run_folder_write_fields(scree_run_folder *folder, const scree_simulation *simulation,
+                                           scree_report *report)
+{
+    if (simulation->averages.num_periods == folder->num_periods) return SCREE_OK;
+    char *path = scree_path_join(folder->path, "fields.vtkhdf");
+    if (path == NULL) return SCREE_OUT_OF_MEMORY;
+    const scree_status status = scree_fields_save(simulation, path, report);
+    if (status == SCREE_OK) folder->num_periods = simulation->averages.num_periods;
+    free(path);
+    return status;
 }
 
 scree_status scree_run_folder_write_checkpoint(scree_run_folder *folder, const scree_simulation *simulation,

@@ -43,6 +43,9 @@ scree_status scree_frames_open(scree_frames **frames, const char *folder, const 
 scree_status scree_frames_write(scree_frames *frames, const scree_simulation *simulation, scree_report *report);
 scree_status scree_frames_close(scree_frames *frames, scree_report *report);
 
+/// fields.vtkhdf at `path`; the simulation must have averaged over a period.
+scree_status scree_fields_save(const scree_simulation *simulation, const char *path, scree_report *report);
+
 /// checkpoint.h5 at `path`.
 scree_status scree_checkpoint_save(const scree_simulation *simulation, const char *path, scree_report *report);
 

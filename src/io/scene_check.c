@@ -257,6 +257,8 @@ static void check_text(scree_scene_reader *reader, checked_value v)
     }
     bool is_right = v.node->kind == SCREE_YAML_SCALAR && !scree_yaml_is_null(v.node);
     if (is_right && v.section->keys[v.key].rule == SCREE_TEXT_NAME) is_right = is_name(v.node->text);
+    if (is_right && v.section->keys[v.key].rule == SCREE_TEXT_OPTIONAL_NAME)
+        is_right = v.node->text[0] == '\0' || is_name(v.node->text);
     if (is_right && v.section->keys[v.key].rule == SCREE_TEXT_FREE) is_right = is_printable(v.node->text);
     if (!is_right) refuse(reader, v);
 }

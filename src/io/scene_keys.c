@@ -69,6 +69,9 @@ static void append_text_rule(short_text *to, const scree_scene_section *section,
     case SCREE_TEXT_PATH:
         append(to, "the path of a file");
         break;
+    case SCREE_TEXT_OPTIONAL_NAME:
+        append(to, "a name, or \"\" for none");
+        break;
     case SCREE_TEXT_WORD:
         append_words(to, section, key);
         break;
@@ -161,7 +164,7 @@ static void describe_range(const scree_scene_section *section, int key, char *te
         append(&to, "list of up to %.17g", k->max);
         break;
     case CYAML_STRING:
-        if (k->rule == SCREE_TEXT_NAME) append(&to, "name");
+        if (k->rule == SCREE_TEXT_NAME || k->rule == SCREE_TEXT_OPTIONAL_NAME) append(&to, "name");
         else if (k->rule == SCREE_TEXT_PATH) append(&to, "path");
         else if (k->rule == SCREE_TEXT_FREE) append(&to, "text");
         else append_words(&to, section, key);

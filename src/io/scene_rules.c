@@ -343,13 +343,57 @@ static void check_repose(scree_scene_reader *reader)
                       "repose.measure is true, but the range of x from %g to %g is empty; set from < to", from, to);
 }
 
+/// A box with cells, a period from one of two sources, a range of energies.
+static void check_fields(scree_scene_reader *reader, scree_rules_names *walls)
+{
+    const scree_yaml_node *fields = scree_yaml_find(reader->root, "fields");
+    const char *measure = scree_rules_text(fields, "measure"), *wall = scree_rules_text(fields, "wall");
+    if (measure == NULL || strcmp(measure, "true") != 0) return;
+    const scree_yaml_node *region = scree_yaml_find(fields, "region");
+    double low[3], high[3], cells[3], period, bins, energy_min, energy_max;
+    if (scree_rules_numbers(region, "min", low, 3) && scree_rules_numbers(region, "max", high, 3))
+        for (int k = 0; k < 3; ++k)
+            if (!(low[k] < high[k]))
+                scree_scene_fault(reader, scree_rules_place(fields, "region"),
+                                  "region of fields is empty: along %c it goes from %g to %g m; min must be below max",
+                                  "xyz"[k], low[k], high[k]);
+    if (scree_rules_numbers(fields, "cells", cells, 3))
+    {
+        const bool is_whole = cells[0] == floor(cells[0]) && cells[1] == floor(cells[1]) && cells[2] == floor(cells[2]);
+        if (!is_whole || cells[0] * cells[1] * cells[2] > 1e7)
+            scree_scene_fault(reader, scree_rules_place(fields, "cells"),
+                              "cells of fields is [%g, %g, %g]; they must be whole numbers, at most 1e7 in all",
+                              cells[0], cells[1], cells[2]);
+    }
+    if (wall != NULL && scree_rules_number(fields, "period", &period) && (wall[0] == '\0') == isnan(period))
+        scree_scene_fault(reader, fields,
+                          isnan(period) ? "fields has neither period nor wall; give one of them"
+                                        : "fields has both period and wall; remove one");
+    if (wall != NULL && wall[0] != '\0')
+    {
+        const int64_t index = scree_rules_resolve(reader, walls, scree_yaml_find(fields, "wall"), "wall of fields");
+        const scree_yaml_node *list = scree_yaml_find(reader->root, "walls");
+        const char *kind = index >= 0 ? scree_rules_text(scree_yaml_find(list->items[index], "motion"), "kind") : NULL;
+        if (kind != NULL && strcmp(kind, "rotate") != 0)
+            scree_scene_fault(reader, scree_yaml_find(fields, "wall"),
+                              "wall of fields is \"%.255s\", whose motion is %s; name one that rotates, or give period",
+                              wall, kind);
+    }
+    if (scree_rules_number(fields, "energy_bins", &bins) && bins > 0 &&
+        scree_rules_number(fields, "energy_min", &energy_min) &&
+        scree_rules_number(fields, "energy_max", &energy_max) && !(energy_min < energy_max))
+        scree_scene_fault(reader, scree_rules_place(fields, "energy_min"),
+                          "energy_min of fields is %g J, energy_max %g J; set energy_min < energy_max", energy_min,
+                          energy_max);
+}
+
 void scree_scene_check_rules(scree_scene_reader *reader)
 {
     if (reader->root->kind != SCREE_YAML_SECTION || reader->is_exhausted) return;
     scree_rules_names materials = scree_rules_collect(reader, "materials");
     scree_rules_names shapes = scree_rules_collect(reader, "shapes");
     scree_rules_collect(reader, "particles");
-    scree_rules_collect(reader, "walls");
+    scree_rules_names walls = scree_rules_collect(reader, "walls");
     if (reader->is_exhausted) return;
 
     material_pairs pairs = {.num = scree_rules_num_items(scree_yaml_find(reader->root, "materials"))};
@@ -370,6 +414,7 @@ void scree_scene_check_rules(scree_scene_reader *reader)
     check_time(reader);
     fill_output(reader);
     check_repose(reader);
+    check_fields(reader, &walls);
     if (reader->num_faults > 0 || reader->is_exhausted) return;
     scree_rules_warn_unused(reader, &materials);
     scree_rules_warn_unused(reader, &shapes);

@@ -568,6 +568,97 @@ static const scree_scene_section repose_section = {
     "repose", "Angle of repose: largest height in bins along x, fitted by a sigmoid (Bilock 2020, 6.3).", repose_fields,
     repose_keys, COUNT(repose_keys)};
 
+// ------------------------------------------------------------------------------------------------------------- fields
+
+static const cyaml_schema_field_t grid_fields[] = {NUMBERS(scree_region_def, min, 3), NUMBERS(scree_region_def, max, 3),
+                                                   CYAML_FIELD_END};
+static const scree_scene_key grid_keys[] = {
+    {.name = "min",
+     .unit = "m",
+     .default_text = "[0, 0, 0]",
+     .min = -MAX_POSITION,
+     .max = MAX_POSITION,
+     .meaning = "lower corner"},
+    {.name = "max",
+     .unit = "m",
+     .default_text = "[0, 0, 0]",
+     .min = -MAX_POSITION,
+     .max = MAX_POSITION,
+     .meaning = "upper corner"},
+};
+static const scree_scene_section grid_section = {
+    "fields.region", "Box of the grid. What reaches out of it is left out.", grid_fields, grid_keys, COUNT(grid_keys)};
+
+static const cyaml_schema_field_t fields_fields[] = {TRUTH(scree_fields_def, measure),
+                                                     SECTION(scree_fields_def, region, grid_fields),
+                                                     NUMBERS(scree_fields_def, cells, 3),
+                                                     NUMBER(scree_fields_def, from),
+                                                     NUMBER(scree_fields_def, period),
+                                                     TEXT(scree_fields_def, wall),
+                                                     INTEGER(scree_fields_def, samples),
+                                                     INTEGER(scree_fields_def, energy_bins),
+                                                     NUMBER(scree_fields_def, energy_min),
+                                                     NUMBER(scree_fields_def, energy_max),
+                                                     CYAML_FIELD_END};
+static const scree_scene_key fields_keys[] = {
+    {.name = "measure", .default_text = "false", .meaning = "whether fields.vtkhdf is made"},
+    {.name = "region", .default_text = "{}", .section = &grid_section, .meaning = "where"},
+    {.name = "cells",
+     .unit = "1",
+     .default_text = "[1, 1, 1]",
+     .min = 1,
+     .max = 10000,
+     .meaning = "cells along x, y and z, whole numbers, at most 1e7 in all"},
+    {.name = "from",
+     .unit = "s",
+     .default_text = "0",
+     .min = 0,
+     .max = MAX_TIME,
+     .meaning = "when the first period begins: after the start-up"},
+    {.name = "period",
+     .unit = "s",
+     .default_text = "auto",
+     .special = "auto",
+     .min = 1e-12,
+     .max = MAX_TIME,
+     .meaning = "length of the periods that are averaged over; auto: one revolution of the wall"},
+    {.name = "wall",
+     .default_text = "\"\"",
+     .rule = SCREE_TEXT_OPTIONAL_NAME,
+     .meaning = "name of a wall that rotates; give this or period"},
+    {.name = "samples",
+     .unit = "1",
+     .default_text = "200",
+     .min = 1,
+     .max = 1e6,
+     .meaning = "looks at the particles in a period, at equal distances"},
+    {.name = "energy_bins",
+     .unit = "1",
+     .default_text = "0",
+     .min = 0,
+     .max = 10000,
+     .meaning = "bins of the energies that collisions lose, each a constant factor wider than the one before; 0: "
+                "collisions are not followed"},
+    {.name = "energy_min",
+     .unit = "J",
+     .default_text = "1e-12",
+     .min = 1e-100,
+     .max = 1e100,
+     .meaning = "lower edge of the first bin"},
+    {.name = "energy_max",
+     .unit = "J",
+     .default_text = "1",
+     .min = 1e-100,
+     .max = 1e100,
+     .meaning = "upper edge of the last bin"},
+};
+static const scree_scene_section fields_section = {
+    "fields",
+    "Averages over whole periods, kept while the run goes on: solid fraction, velocity, speed and granular temperature "
+    "on "
+    "a grid, and the energies of collisions. Nothing is stored per step.",
+    fields_fields, fields_keys, COUNT(fields_keys)};
+
 // --------------------------------------------------------------------------------------------------------------- root
 
 static const cyaml_schema_value_t material_value = {
@@ -590,6 +681,7 @@ static const cyaml_schema_field_t root_fields[] = {TEXT(scree_scene, name),
                                                    SECTION(scree_scene, solver, solver_fields),
                                                    SECTION(scree_scene, output, output_fields),
                                                    SECTION(scree_scene, repose, repose_fields),
+                                                   SECTION(scree_scene, fields, fields_fields),
                                                    CYAML_FIELD_END};
 static const scree_scene_key root_keys[] = {
     {.name = "name", .default_text = "scene", .rule = SCREE_TEXT_FREE, .meaning = "for titles and messages"},
@@ -620,6 +712,7 @@ static const scree_scene_key root_keys[] = {
     {.name = "solver", .default_text = "{}", .section = &solver_section, .meaning = "how contacts are found"},
     {.name = "output", .default_text = "{}", .section = &output_section, .meaning = "what is written, how often"},
     {.name = "repose", .default_text = "{}", .section = &repose_section, .meaning = "measurement of a pile"},
+    {.name = "fields", .default_text = "{}", .section = &fields_section, .meaning = "averages over time on a grid"},
 };
 static const scree_scene_section root_section = {"scene", "The top of the file.", root_fields, root_keys,
                                                  COUNT(root_keys)};

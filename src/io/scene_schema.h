@@ -12,10 +12,11 @@
 /// What the texts of a key may be.
 typedef enum scree_text_rule
 {
-    SCREE_TEXT_FREE, ///< anything printable
-    SCREE_TEXT_NAME, ///< letters, digits, _ and -, not digits alone: so that --set can address it
-    SCREE_TEXT_PATH, ///< a file
-    SCREE_TEXT_WORD  ///< one of `words`
+    SCREE_TEXT_FREE,          ///< anything printable
+    SCREE_TEXT_NAME,          ///< letters, digits, _ and -, not digits alone: so that --set can address it
+    SCREE_TEXT_PATH,          ///< a file
+    SCREE_TEXT_OPTIONAL_NAME, ///< a name, or empty for none
+    SCREE_TEXT_WORD           ///< one of `words`
 } scree_text_rule;
 
 /// One key of a section.

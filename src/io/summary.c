@@ -117,6 +117,9 @@ static void put_repose(FILE *out, const scree_simulation *simulation, bool is_he
 /// Of each moving wall the work and, if it rotates, power and torque over its last whole revolution.
 static void put_wall_loads(FILE *out, const scree_simulation *simulation)
 {
+    const scree_averages *averages = &simulation->averages;
+    const double seconds = (double)averages->num_periods * averages->period;
+    put_integer(out, "fields_periods", averages->num_periods);
     put_key(out, "wall_loads");
     fputc('{', out);
     bool is_first = true;
@@ -132,6 +135,8 @@ static void put_wall_loads(FILE *out, const scree_simulation *simulation)
         put_value(out, power);
         fputs(", \"torque_of_last_revolution\": ", out);
         put_value(out, power / wall->motion.angular_velocity);
+        fputs(", \"power_of_periods\": ", out);
+        put_value(out, averages->num_periods > 0 ? averages->works.total[w] / seconds : (double)NAN);
         fputc('}', out);
         is_first = false;
     }

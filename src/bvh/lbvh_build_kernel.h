@@ -51,14 +51,14 @@ SCREE_FN void scree_lbvh_bounds_at(scree_lbvh_bounds_args a, int64_t c)
     const int64_t begin = a.num_leaves * c / SCREE_LBVH_BOUNDS_CHUNKS;
     const int64_t end = a.num_leaves * (c + 1) / SCREE_LBVH_BOUNDS_CHUNKS;
     scree_box bounds = scree_box_empty();
-    for (int64_t i = begin; i < end; ++i) bounds = scree_box_with_point(bounds, scree_box_middle(a.boxes[i]));
+    for (int64_t i = begin; i < end; ++i) bounds = scree_box_with_point(bounds, scree_morton_middle(a.boxes[i]));
     a.chunk_bounds[c] = bounds;
 }
 
 /// Code of box i, before the sort.
 SCREE_FN void scree_lbvh_codes_at(scree_lbvh_codes_args a, int64_t i)
 {
-    a.codes[i] = scree_morton_code(scree_box_middle(a.boxes[i]), a.frame);
+    a.codes[i] = scree_morton_code(scree_morton_middle(a.boxes[i]), a.frame);
     a.items[i] = (int32_t)i;
 }
 

@@ -39,7 +39,7 @@ SCREE_FN uint64_t scree_morton_encode(uint64_t x, uint64_t y, uint64_t z)
 }
 
 /// Middle of a box. Halved first, so that it cannot overflow.
-SCREE_FN scree_vec3 scree_box_middle(scree_box box)
+SCREE_FN scree_vec3 scree_morton_middle(scree_box box)
 {
     const scree_real half = (scree_real)0.5;
     return scree_vec3_add(scree_vec3_scale(box.lower, half), scree_vec3_scale(box.upper, half));

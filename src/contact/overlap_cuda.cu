@@ -1,28 +1,4 @@
-#include "contact/narrow_phase.h"
-#include "contact/overlap_kernel.h"
+#include "contact/overlap_pairs_kernel.h"
 #include "core/launch_cuda.cuh"
-
-/// Overlaps of candidate pairs, a thread per pair. All pointers, those of the bodies too, on the device.
-typedef struct scree_overlap_pairs_args
-{
-    scree_bodies bodies;
-    const scree_candidate_pair *pairs; ///< (num_pairs)
-    scree_overlap_slice *slices;       ///< (num_pairs) buffers, none shared
-    scree_overlap_result *results;     ///< (num_pairs)
-    scree_overlap_options options;
-} scree_overlap_pairs_args;
-
-/// WORKSPACE_FULL stays in the result: the host enlarges that slice and launches such pairs again.
-SCREE_FN void scree_overlap_pairs_at(scree_overlap_pairs_args a, int64_t p)
-{
-    const int32_t body[2] = {a.pairs[p].i, a.pairs[p].j};
-    scree_overlap_pair pair;
-    for (int32_t side = 0; side < 2; ++side)
-    {
-        pair.shape[side] = a.bodies.shapes + a.bodies.shape[body[side]];
-        pair.pose[side] = a.bodies.pose + body[side];
-    }
-    a.results[p] = scree_overlap_pair_compute(&pair, &a.options, a.slices + p);
-}
 
 SCREE_DEFINE_LAUNCH(scree_overlap_pairs)

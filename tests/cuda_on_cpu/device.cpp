@@ -60,15 +60,19 @@ void set_visible(const char *address, const allocation &block, bool is_visible)
     mprotect(block.map + page_bytes, block.map_bytes - 2 * page_bytes, is_visible ? PROT_READ | PROT_WRITE : PROT_NONE);
 }
 
-/// The allocation that holds the address; its end counts too.
-bool is_of_device(const void *address)
+using allocation_entry = std::map<char *, allocation>::value_type;
+
+/// The allocation that holds the address, its end counts too; NULL for host memory.
+const allocation_entry *find_allocation(const void *address)
 {
     const auto &allocations = the_device().allocations;
     auto after = allocations.upper_bound(const_cast<char *>(static_cast<const char *>(address)));
-    if (after == allocations.begin()) return false;
+    if (after == allocations.begin()) return nullptr;
     const auto before = std::prev(after);
-    return static_cast<const char *>(address) <= before->first + before->second.num_bytes;
+    return static_cast<const char *>(address) <= before->first + before->second.num_bytes ? &*before : nullptr;
 }
+
+bool is_of_device(const void *address) { return find_allocation(address) != nullptr; }
 
 bool is_mapped(uintptr_t address)
 {
@@ -145,6 +149,8 @@ void refuse_host_addresses(const char *what, const void *bytes, size_t num_bytes
         std::memcpy(&word, static_cast<const char *>(bytes) + at, sizeof word);
         // programs, heaps and stacks lie between these bounds, and next to no number of a simulation does
         if (word < uintptr_t(0x55) << 40 || word >= uintptr_t(0x80) << 40) continue;
+        // a small number with anything in the gap behind it
+        if ((word & 0xffffffffu) < 1u << 20) continue;
         if (is_of_device(reinterpret_cast<const void *>(word)) || !is_mapped(word)) continue;
         fail("%s gets the host address %p, at byte %zu of %zu", what, reinterpret_cast<void *>(word), at, num_bytes);
     }
@@ -337,8 +343,19 @@ cudaError_t cudaMemcpyAsync(void *to, const void *from, size_t num_bytes, cudaMe
 
 cudaError_t cudaMemcpy(void *to, const void *from, size_t num_bytes, cudaMemcpyKind kind)
 {
-    const cudaError_t error = cudaMemcpyAsync(to, from, num_bytes, kind, nullptr);
-    return error != cudaSuccess ? error : cudaDeviceSynchronize();
+    drain();
+    if (num_bytes == 0) return cudaSuccess;
+    if (the_device().is_lost) return remember(cudaErrorIllegalAddress);
+    check_kind(to, from, kind);
+    if (kind == cudaMemcpyHostToDevice) refuse_host_addresses("a copy to the device", from, num_bytes);
+    // at once, and without showing all the rest of the memory
+    const allocation_entry *touched[2] = {find_allocation(to), find_allocation(from)};
+    for (const allocation_entry *entry : touched)
+        if (entry != nullptr) set_visible(entry->first, entry->second, true);
+    std::memcpy(to, from, num_bytes);
+    for (const allocation_entry *entry : touched)
+        if (entry != nullptr) set_visible(entry->first, entry->second, false);
+    return cudaSuccess;
 }
 
 cudaError_t cudaMemsetAsync(void *address, int value, size_t num_bytes, cudaStream_t)
@@ -351,6 +368,5 @@ cudaError_t cudaMemsetAsync(void *address, int value, size_t num_bytes, cudaStre
 
 cudaError_t cudaMemset(void *address, int value, size_t num_bytes)
 {
-    const cudaError_t error = cudaMemsetAsync(address, value, num_bytes, nullptr);
-    return error != cudaSuccess ? error : cudaDeviceSynchronize();
+    return cudaMemsetAsync(address, value, num_bytes, nullptr); // which may return before it is done
 }

@@ -398,16 +398,16 @@ warp_meeting_result meet_warp(unsigned mask, warp_operation operation, lane_valu
 
 /// The thread sanitizer does not know fences. So a fence makes the later atomics of its thread releases, and acquires
 /// what the earlier ones (the last four addresses) have met.
-void note_atomic(const void *address)
+bool note_atomic(const void *address)
 {
     device_thread *thread = this_worker->running;
-    if (thread->has_fenced) race_release(address);
     thread->atomics[thread->num_atomics++ & 3] = address;
     if (settings().order == schedule::random && this_worker->random() % 4 == 0)
     {
         this_worker->make_ready(thread);
         this_worker->suspend(waiting::for_its_turn);
     }
+    return thread->has_fenced;
 }
 
 void fence()

@@ -74,7 +74,7 @@ static void make_scene(scene *s, int round, uint64_t *state)
     }
     for (int64_t i = 0; i < num; ++i)
     {
-        s->centres[i] = scree_box_middle(s->boxes[i]);
+        s->centres[i] = scree_morton_middle(s->boxes[i]);
         s->radii[i] = scree_vec3_length(scree_vec3_sub(s->boxes[i].upper, s->centres[i]));
     }
     const int64_t num_walls = (int64_t)(scree_test_random(state) * (MAX_WALLS + 1));

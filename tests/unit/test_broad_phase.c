@@ -300,7 +300,7 @@ static void make_crowd(crowd *c, int64_t num)
     c->radii = scree_test_alloc(num, sizeof *c->radii);
     for (int64_t i = 0; i < num; ++i)
     {
-        c->centres[i] = scree_box_middle(c->boxes[i]);
+        c->centres[i] = scree_morton_middle(c->boxes[i]);
         c->radii[i] = scree_vec3_length(scree_vec3_sub(c->boxes[i].upper, c->centres[i]));
     }
     c->floor = make_floor();

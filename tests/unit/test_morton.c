@@ -100,12 +100,12 @@ static void test_degenerate_frames(void)
 
 static void test_middle(void)
 {
-    const scree_vec3 middle = scree_box_middle(make_box(-1, 2, 5, 3, 2, 6));
+    const scree_vec3 middle = scree_morton_middle(make_box(-1, 2, 5, 3, 2, 6));
     SCREE_CHECK_CLOSE(middle.x, 1, 0);
     SCREE_CHECK_CLOSE(middle.y, 2, 0);
     SCREE_CHECK_CLOSE(middle.z, 5.5, 0);
     const scree_real large = SCREE_REAL_MAX;
-    SCREE_CHECK(scree_box_middle(make_box(large, 0, 0, large, 0, 0)).x == large);
+    SCREE_CHECK(scree_morton_middle(make_box(large, 0, 0, large, 0, 0)).x == large);
 }
 
 int main(void)

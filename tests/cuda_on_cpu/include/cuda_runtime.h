@@ -116,18 +116,28 @@ template <class T> T __shfl_xor_sync(unsigned mask, T value, int with, int width
 inline void __threadfence() { cuda_on_cpu::fence(); }
 inline void __threadfence_block() { cuda_on_cpu::fence(); }
 
-/// Atomics order nothing but themselves, as on the device. Integers only: sums of floats would depend on the order.
-#define CUDA_ON_CPU_ATOMIC(name, expression)                                                                    \
-    template <class T> T name(T *address, typename std::common_type<T>::type value)                             \
-    {                                                                                                           \
-        static_assert(std::is_integral<T>::value, #name " of a type that is not an integer");                   \
-        cuda_on_cpu::note_atomic(address);                                                                      \
-        T old = __atomic_load_n(address, __ATOMIC_RELAXED);                                                     \
-        while (!__atomic_compare_exchange_n(address, &old, static_cast<T>(expression), false, __ATOMIC_RELAXED, \
-                                            __ATOMIC_RELAXED))                                                  \
-        {                                                                                                       \
-        }                                                                                                       \
-        return old;                                                                                             \
+namespace cuda_on_cpu
+{
+/// Atomics order nothing but themselves, as on the device; after a fence of the same thread they release what was
+/// written before it.
+template <class T> bool exchange(T *address, T *expected, T value, bool is_release)
+{
+    static_assert(std::is_integral<T>::value, "atomics are for integers: sums of floats would depend on the order");
+    return is_release
+               ? __atomic_compare_exchange_n(address, expected, value, false, __ATOMIC_RELEASE, __ATOMIC_RELAXED)
+               : __atomic_compare_exchange_n(address, expected, value, false, __ATOMIC_RELAXED, __ATOMIC_RELAXED);
+}
+} // namespace cuda_on_cpu
+
+#define CUDA_ON_CPU_ATOMIC(name, expression)                                                  \
+    template <class T> T name(T *address, typename std::common_type<T>::type value)           \
+    {                                                                                         \
+        const bool is_release = cuda_on_cpu::note_atomic(address);                            \
+        T old = __atomic_load_n(address, __ATOMIC_RELAXED);                                   \
+        while (!cuda_on_cpu::exchange(address, &old, static_cast<T>(expression), is_release)) \
+        {                                                                                     \
+        }                                                                                     \
+        return old;                                                                           \
     }
 CUDA_ON_CPU_ATOMIC(atomicAdd, old + value)
 CUDA_ON_CPU_ATOMIC(atomicMin, value < old ? value : old)
@@ -137,9 +147,8 @@ CUDA_ON_CPU_ATOMIC(atomicExch, value)
 
 template <class T> T atomicCAS(T *address, typename std::common_type<T>::type expected, T value)
 {
-    cuda_on_cpu::note_atomic(address);
     T old = expected;
-    __atomic_compare_exchange_n(address, &old, value, false, __ATOMIC_RELAXED, __ATOMIC_RELAXED);
+    cuda_on_cpu::exchange(address, &old, value, cuda_on_cpu::note_atomic(address));
     return old;
 }
 

@@ -67,8 +67,8 @@ struct warp_meeting_result
 /// The lanes of `mask` meet. Orders memory between them for warp_operation::sync only, as on the device.
 warp_meeting_result meet_warp(unsigned mask, warp_operation operation, lane_value value, const char *file, int line);
 
-/// Called before each atomic access and by fences. Only the race build makes something of the address.
-void note_atomic(const void *address);
+/// Before each atomic access. True if the thread has fenced, so that the access releases.
+bool note_atomic(const void *address);
 void fence();
 
 /// Dynamic shared memory of the block; filled with 0xff when the block starts.

@@ -6,6 +6,7 @@ extern "C"
 #include "bvh/bvh_launch.h"
 #include "contact/history.h"
 #include "contact/overlap_pairs_kernel.h"
+#include "contact/sphere_pairs.h"
 #include "core/sort.h"
 #include "dynamics/dynamics.h"
 #include "dynamics/step_buffers.h"
@@ -32,10 +33,15 @@ SCREE_DECLARE_LAUNCH_CUDA(scree_pair_second_begin)
 SCREE_DECLARE_LAUNCH_CUDA(scree_pair_row_begin)
 SCREE_DECLARE_LAUNCH_CUDA(scree_pair_rows)
 SCREE_DECLARE_LAUNCH_CUDA(scree_overlap_pairs)
+SCREE_DECLARE_LAUNCH_CUDA(scree_sphere_sphere_count)
+SCREE_DECLARE_LAUNCH_CUDA(scree_sphere_sphere_write)
+SCREE_DECLARE_LAUNCH_CUDA(scree_sphere_mesh_count)
+SCREE_DECLARE_LAUNCH_CUDA(scree_sphere_mesh_write)
 SCREE_DECLARE_LAUNCH_CUDA(scree_history_match)
 SCREE_DECLARE_LAUNCH_CUDA(scree_contact_force)
 SCREE_DECLARE_LAUNCH_CUDA(scree_gather)
 SCREE_DECLARE_LAUNCH_CUDA(scree_work)
+SCREE_DECLARE_LAUNCH_CUDA(scree_wall_load)
 SCREE_DECLARE_LAUNCH_CUDA(scree_predict)
 SCREE_DECLARE_LAUNCH_CUDA(scree_correct)
 SCREE_DECLARE_LAUNCH_CUDA(scree_boxes)
@@ -51,6 +57,7 @@ static const char scene_text[] =
     "  - {materials: [stone, steel], friction_coefficient: 0.3, damping_ratio: 0.2}\n"
     "shapes:\n"
     "  - {name: rock, source: rock, triangles: 40, seed: 3}\n"
+    "  - {name: ball, source: sphere, size: [0.016, 0, 0]}\n"
     "  - {name: schoenhardt, source: schoenhardt, size: [0.02, 0, 0]}\n"
     "  - {name: floor, source: box, size: [0.3, 0.3, 0.02]}\n"
     "particles:\n"
@@ -59,6 +66,8 @@ static const char scene_text[] =
     "     region: {min: [-0.05, -0.05, 0.001], max: [0.05, 0.05, 0.24]}}\n"
     "  - {name: twisted, shape: schoenhardt, material: stone, count: 30, seed: 2, velocity: [0, 0, -5],\n"
     "     region: {min: [-0.05, -0.05, 0.24], max: [0.05, 0.05, 0.4]}}\n"
+    "  - {name: balls, shape: ball, material: stone, count: 40, seed: 4, velocity: [0, 0, -8],\n"
+    "     region: {min: [-0.05, -0.05, 0.4], max: [0.05, 0.05, 0.55]}}\n"
     "walls:\n"
     "  - {name: floor, shape: floor, material: steel, position: [0, 0, -0.01],\n"
     "     motion: {kind: translate, velocity: [0, 0, 0.2], start: 0.0, end: 0.02}}\n"
@@ -102,6 +111,7 @@ static const scree_shape_view *shapes_on(side &where)
     std::vector<scree_shape_view> views(s->shape_views, s->shape_views + 2 * s->num_shapes);
     for (scree_shape_view &view : views)
     {
+        if (view.kind == SCREE_KIND_SPHERE) continue;
         view.vertices = where.copy(view.vertices, view.num_vertices);
         view.triangles = where.copy(view.triangles, view.num_triangles);
         view.neighbours = where.copy(view.neighbours, 3 * (int64_t)view.num_triangles);
@@ -117,6 +127,7 @@ static scree_body_motion motion_on(side &where)
     motion.velocity = where.copy(b->velocity, num_bodies);
     motion.angular_velocity = where.copy(b->angular_velocity, num_bodies);
     motion.inverse_mass = where.copy(b->inverse_mass, num_bodies);
+    motion.inverse_radius = where.copy(b->inverse_radius, num_bodies);
     motion.material = where.copy(b->material, num_bodies);
     return motion;
 }
@@ -141,10 +152,11 @@ static scree_contact_list contacts_on(side &where, const scree_contact_list &lis
     c.elastic_work = where.copy(list.elastic_work, n);
     c.spring_work = where.copy(list.spring_work, n);
     c.is_slipping = where.copy(list.is_slipping, n);
-    c.is_twisting = where.copy(list.is_twisting, n);
+    c.is_turning = where.copy(list.is_turning, n);
     c.spring_force = where.copy(list.spring_force, n);
     c.tangential_stiffness = where.copy(list.tangential_stiffness, n);
     c.torsion = where.copy(list.torsion, n);
+    c.rolling_moment = where.copy(list.rolling_moment, n);
     c.elastic_energy = where.copy(list.elastic_energy, n);
     c.spring_energy = where.copy(list.spring_energy, n);
     return c;
@@ -363,6 +375,14 @@ static void test_pairs()
 
 // ---- contacts
 
+/// Number of spheres in candidate pair p.
+static int kind_of(int64_t p)
+{
+    const scree_candidate_pair pair = s->broad_phase.pairs[p];
+    return (s->shape_views[b->shape[pair.i]].kind == SCREE_KIND_SPHERE) +
+           (s->shape_views[b->shape[pair.j]].kind == SCREE_KIND_SPHERE);
+}
+
 /// A workspace of the host whose arrays, whatever they are, lie where they are needed; zeroed, as new ones are.
 static scree_overlap_slice slice_on(side &where, const scree_overlap_slice &slice)
 {
@@ -380,10 +400,16 @@ static scree_overlap_slice slice_on(side &where, const scree_overlap_slice &slic
 
 static void find_overlaps_on(side &where)
 {
-    // those that touch, and some that may not
-    std::vector<scree_candidate_pair> pairs(s->contacts.bodies, s->contacts.bodies + s->contacts.num_contacts);
-    pairs.insert(pairs.end(), s->broad_phase.pairs, s->broad_phase.pairs + 20);
+    // those that touch, and a few that may not
+    std::vector<scree_candidate_pair> pairs;
+    int64_t num_apart = 0;
+    for (int64_t p = 0; p < s->broad_phase.num_pairs; ++p)
+    {
+        const bool is_touching = s->contacts.first_of_pair[p] < s->contacts.first_of_pair[p + 1];
+        if (kind_of(p) == 0 && (is_touching || ++num_apart <= 20)) pairs.push_back(s->broad_phase.pairs[p]);
+    }
     const int64_t num_pairs = (int64_t)pairs.size();
+    SCREE_CHECK(num_pairs > 60);
     scree_overlap_workspace *workspace = scree_overlap_workspace_create();
     std::vector<scree_overlap_slice> slices;
     for (int64_t p = 0; p < num_pairs; ++p)
@@ -419,6 +445,62 @@ static void find_overlaps_on(side &where)
 }
 
 static void test_overlaps() { check_two_sides(find_overlaps_on); }
+
+/// Both passes over the pairs of two spheres, or of a sphere and a mesh.
+static void find_spheres_on(side &where, int kind)
+{
+    const int64_t num_pairs = s->broad_phase.num_pairs;
+    std::vector<int32_t> batch;
+    for (int64_t p = 0; p < num_pairs; ++p)
+        if (kind_of(p) == kind) batch.push_back((int32_t)p);
+    const int64_t num = (int64_t)batch.size();
+    scree_sphere_pairs_args args = {};
+    args.bodies.shapes = shapes_on(where);
+    args.bodies.shape = where.copy(b->shape, num_bodies);
+    args.bodies.pose = where.copy(b->pose, num_bodies);
+    args.bodies.num_bodies = num_bodies;
+    args.pairs = where.copy(s->broad_phase.pairs, num_pairs);
+    args.batch = where.copy(batch.data(), num);
+    args.num_contacts = where.zeros<int32_t>(num_pairs);
+    args.max_found = 8;
+    args.found = where.make<scree_sphere_contact>(num * args.max_found);
+    args.is_inside = where.make<uint8_t>(num);
+    if (kind == 2) LAUNCH_ON(where, scree_sphere_sphere_count, args, num);
+    else LAUNCH_ON(where, scree_sphere_mesh_count, args, num);
+    where.keep(args.num_contacts, num_pairs);
+    if (kind == 1) where.keep(args.is_inside, num);
+
+    std::vector<int64_t> first(1, 0);
+    for (const int32_t num_contacts : where.read(args.num_contacts, num_pairs))
+        first.push_back(first.back() + num_contacts);
+    const int64_t n = first.back();
+    SCREE_CHECK(n > 10);
+    args.list.first_of_pair = where.copy(first.data(), num_pairs + 1);
+    args.list.bodies = where.make<scree_candidate_pair>(n);
+    args.list.patch = where.make<int32_t>(n);
+    args.list.volume = where.make<scree_real>(n);
+    args.list.indentation = where.make<scree_real>(n);
+    args.list.radius = where.make<scree_real>(n);
+    args.list.normal = where.make<scree_vec3>(n);
+    args.list.area_vector = where.make<scree_vec3>(n);
+    args.list.arm = where.make<scree_vec3>(n);
+    if (kind == 2) LAUNCH_ON(where, scree_sphere_sphere_write, args, num);
+    else LAUNCH_ON(where, scree_sphere_mesh_write, args, num);
+    where.keep(args.list.bodies, n);
+    where.keep(args.list.patch, n);
+    where.keep(args.list.volume, n);
+    where.keep(args.list.indentation, n);
+    where.keep(args.list.radius, n);
+    where.keep(args.list.normal, n);
+    where.keep(args.list.area_vector, n);
+    where.keep(args.list.arm, n);
+}
+
+static void test_spheres()
+{
+    check_two_sides([](side &where) { find_spheres_on(where, 1); });
+    check_two_sides([](side &where) { find_spheres_on(where, 2); });
+}
 
 static void match_history_on(side &where, bool has_same_pairs)
 {
@@ -507,6 +589,26 @@ static void test_work()
         });
 }
 
+static void test_wall_loads()
+{
+    SCREE_CHECK(b->num_moving_walls > 0);
+    check_two_sides(
+        [](side &where)
+        {
+            const int64_t num_blocks = (s->contacts.num_contacts + SCREE_WALL_LOAD_BLOCK - 1) / SCREE_WALL_LOAD_BLOCK;
+            scree_wall_load_args args = {};
+            args.contacts = contacts_on(where, s->contacts, s->broad_phase.num_pairs);
+            args.pose = where.copy(b->pose, num_bodies);
+            args.moving = where.copy(b->moving_wall, s->num_walls);
+            args.axes = where.copy(b->wall_axes, b->num_moving_walls);
+            args.num_moving = b->num_moving_walls;
+            args.num_particles = (int32_t)num_particles;
+            args.sums = where.make<scree_real>(num_blocks * args.num_moving);
+            LAUNCH_ON(where, scree_wall_load, args, num_blocks);
+            where.keep(args.sums, num_blocks * args.num_moving);
+        });
+}
+
 int main()
 {
     scene_run_start(&run, scene_text);
@@ -525,9 +627,11 @@ int main()
     SCREE_RUN(test_tree);
     SCREE_RUN(test_pairs);
     SCREE_RUN(test_overlaps);
+    SCREE_RUN(test_spheres);
     SCREE_RUN(test_history);
     SCREE_RUN(test_forces);
     SCREE_RUN(test_work);
+    SCREE_RUN(test_wall_loads);
     scene_run_end(&run);
     return SCREE_TEST_END();
 }

@@ -160,3 +160,32 @@ def test_pictures_of_the_fields(whole):
 def test_pictures_need_fields(tmp_path):
     done = subprocess.run([sys.executable, "-B", str(TOOLS / "fields.py"), str(tmp_path)], capture_output=True, text=True)
     assert done.returncode == 1 and done.stderr.strip() and "Traceback" not in done.stderr
+
+
+def test_counts_of_particles_that_fly_apart(tmp_path):
+    (tmp_path / "scene.yaml").write_text("""
+name: apart
+gravity: [0, 0, 0]
+time: {end: 1, step: 1e-3}
+materials: [{name: stone, density: 2500, youngs_modulus: 1e6, poisson_ratio: 0.25}]
+contact_laws: [{materials: [stone, stone], friction_coefficient: 0.5, damping_ratio: 0.3}]
+shapes:
+  - {name: cube, source: box, size: 0.1}
+  - {name: ball, source: sphere, size: 0.1}
+particles:
+  - {name: cubes, shape: cube, material: stone, bodies: [{position: [-1, 0, 0], velocity: [3, 0, 1]}]}
+  - {name: balls, shape: ball, material: stone,
+     bodies: [{position: [0.5, 1, 0], velocity: [-1, 0, 0]}, {position: [0.9, -1, 0]}]}
+output: {series: 0.1, frames: 0.5, checkpoint: 0}
+""")
+    run(tmp_path / "scene.yaml", "-o", tmp_path / "run", "--quiet")
+    counts = [sys.executable, "-B", str(TOOLS / "counts.py"), str(tmp_path / "run")]
+    done = subprocess.run([*counts, "--zone", "right: x > 0.1", "--mean", "cubes"], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    rows = [line.split(",") for line in (tmp_path / "run/counts.csv").read_text().splitlines()]
+    assert rows[0] == ["time [s]", "cubes in right [1]", "balls in right [1]", "x of cubes [m]", "y of cubes [m]", "z of cubes [m]"]
+    table = np.array(rows[1:], dtype=float)
+    assert np.allclose(table, [[0, 0, 2, -1, 0, 0], [0.5, 1, 1, 0.5, 0, 0.5], [1, 1, 1, 2, 0, 1]], atol=1e-6)
+    for bad in (["--zone", "right x > 0"], ["--mean", "cones"], []):
+        done = subprocess.run([*counts, *bad], capture_output=True, text=True)
+        assert done.returncode != 0 and "Traceback" not in done.stderr and done.stderr.strip()

@@ -105,7 +105,8 @@ static int64_t find_keys(scree_broad_phase *broad_phase, const scree_broad_phase
     int64_t num_keys = 0;
     const scree_pair_list list = {b->sort.keys, &num_keys, b->sort.max_items,
                                   count_bits(input->num_particles + input->num_walls)};
-    scree_particle_pairs_find((scree_particle_pairs_args){broad_phase->tree.view, list});
+    scree_particle_pairs_find((scree_particle_pairs_args){
+        broad_phase->tree.view, list, input->compares_spheres ? input->centres : NULL, input->radii});
     const scree_wall_pairs_args wall_args = {input->centres,   input->radii,    input->walls, input->num_particles,
                                              input->num_walls, BLOCK_PARTICLES, list};
     if (input->num_walls > 0)
@@ -211,7 +212,10 @@ static bool check_rows(const scree_broad_phase *broad_phase, int64_t num_bodies,
 /// What the search should say of two bodies, without the tree's hierarchy.
 static bool are_candidates(const scree_broad_phase_input *input, int64_t i, int64_t j)
 {
-    if (j < input->num_particles) return scree_box_overlaps(input->boxes[i], input->boxes[j]);
+    if (j < input->num_particles)
+        return scree_box_overlaps(input->boxes[i], input->boxes[j]) &&
+               scree_spheres_overlap(input->compares_spheres ? input->centres : NULL, input->radii, (int32_t)i,
+                                     (int32_t)j);
     const scree_broad_phase_wall *wall = input->walls + (j - input->num_particles);
     if (!wall->is_present) return false;
     scree_vec3 centre = input->centres[i];

@@ -23,11 +23,12 @@ typedef struct scree_broad_phase_wall
 typedef struct scree_broad_phase_input
 {
     const scree_box *boxes;              ///< (num_particles) world boxes with skin
-    const scree_vec3 *centres;           ///< (num_particles) centres of bounding spheres, for the walls
+    const scree_vec3 *centres;           ///< (num_particles) centres of bounding spheres
     const scree_real *radii;             ///< (num_particles) radii of bounding spheres with skin
     const scree_broad_phase_wall *walls; ///< (num_walls)
     int64_t num_particles;
     int64_t num_walls;
+    bool compares_spheres; ///< particles make a pair only if their bounding spheres overlap too
 } scree_broad_phase_input;
 
 /// Owns the particle tree, the pairs and all scratch. Start from {0}.
@@ -41,8 +42,9 @@ typedef struct scree_broad_phase
     struct scree_broad_phase_buffers *buffers; ///< internal
 } scree_broad_phase;
 
-/// Finds all pairs of particles whose boxes overlap, and all pairs (particle, wall) where a particle's sphere meets
-/// the box of one of the wall's triangles. Parallel, same pairs for any number of threads.
+/// Finds all pairs of particles whose boxes overlap (and bounding spheres, if asked for), and all pairs (particle,
+/// wall) where a particle's sphere meets the box of one of the wall's triangles. Parallel, same pairs for any number of
+/// threads.
 scree_status scree_broad_phase_find(scree_broad_phase *broad_phase, const scree_broad_phase_input *input);
 /// Pairs sorted and unique, i < j, rows complete; compared with all pairs by brute force if num_particles <= 2000.
 bool scree_broad_phase_validate(const scree_broad_phase *broad_phase, const scree_broad_phase_input *input,

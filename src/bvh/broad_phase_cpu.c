@@ -77,7 +77,8 @@ static void find_gaps(const scree_cluster *restrict c, int32_t first, scree_box 
 
 /// Pairs of member m with the leaves first .. end - 1 of the list. Those that follow up to a full row of lanes are
 /// compared as well, so none of them may overlap it.
-static void compare_member(scree_cluster *c, scree_pair_list list, int32_t m, int32_t first, int32_t end)
+static void compare_member(scree_cluster *c, const scree_particle_pairs_args *args, int32_t m, int32_t first,
+                           int32_t end)
 {
     const scree_box box = member_box(c, m);
     int32_t hits[MAX_LEAVES + LANES];
@@ -94,15 +95,16 @@ static void compare_member(scree_cluster *c, scree_pair_list list, int32_t m, in
     }
     if (c->num_keys + num_hits > MAX_KEYS)
     {
-        scree_pair_list_append(list, c->keys, c->num_keys);
+        scree_pair_list_append(args->list, c->keys, c->num_keys);
         c->num_keys = 0;
     }
     for (int32_t h = 0; h < num_hits; ++h)
-        c->keys[c->num_keys++] = scree_pair_key(list, c->items[m], c->items[hits[h]]);
+        if (scree_spheres_overlap(args->centres, args->radii, c->items[m], c->items[hits[h]]))
+            c->keys[c->num_keys++] = scree_pair_key(args->list, c->items[m], c->items[hits[h]]);
 }
 
 /// Compares the members with the leaves in the list, and in the first round with each other; then drops those leaves.
-static void compare_cluster(scree_cluster *c, scree_pair_list list, bool is_first_round)
+static void compare_cluster(scree_cluster *c, const scree_particle_pairs_args *args, bool is_first_round)
 {
     const scree_real infinity = (scree_real)INFINITY;
     const scree_box nowhere = {{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
@@ -111,7 +113,7 @@ static void compare_cluster(scree_cluster *c, scree_pair_list list, bool is_firs
     {
         // a member away from all others needs none of them
         const bool has_others = c->num_leaves > c->num_members && scree_box_overlaps(member_box(c, m), c->others);
-        compare_member(c, list, m, is_first_round ? m + 1 : c->num_members,
+        compare_member(c, args, m, is_first_round ? m + 1 : c->num_members,
                        has_others ? c->num_leaves : c->num_members);
     }
     c->num_leaves = c->num_members;
@@ -139,13 +141,13 @@ static void find_pairs_of_cluster(scree_cluster *c, scree_particle_pairs_args ar
         if (!is_hit || node->first_child >= 0) continue;
         if (c->num_leaves == MAX_LEAVES)
         {
-            compare_cluster(c, args.list, is_first_round);
+            compare_cluster(c, &args, is_first_round);
             is_first_round = false;
         }
         c->others = scree_box_union(c->others, node->box);
         set_leaf(c, c->num_leaves++, node->box, -1 - node->first_child);
     }
-    compare_cluster(c, args.list, is_first_round);
+    compare_cluster(c, &args, is_first_round);
 }
 
 /// First node from `begin` on that is not within a small subtree that begins before it.

@@ -55,7 +55,18 @@ typedef struct scree_particle_pairs_args
 {
     scree_lbvh_view tree;
     scree_pair_list list;
+    const scree_vec3 *centres; ///< (num_particles) of bounding spheres; NULL: not compared
+    const scree_real *radii;   ///< (num_particles)
 } scree_particle_pairs_args;
+
+/// Do the bounding spheres of two particles overlap, or are they not asked for?
+SCREE_FN bool scree_spheres_overlap(const scree_vec3 *centres, const scree_real *radii, int32_t a, int32_t b)
+{
+    if (!centres) return true;
+    const scree_vec3 between = scree_vec3_sub(centres[a], centres[b]);
+    const scree_real sum = radii[a] + radii[b];
+    return scree_vec3_dot(between, between) <= sum * sum;
+}
 
 /// Half traversal for node k: a leaf looks for overlaps among the leaves after it, so each pair is met once.
 /// Prokopenko & Lebrun-Grandie (2024). Plain version; on the CPU a faster one stands in for it, see
@@ -71,7 +82,8 @@ SCREE_FN void scree_particle_pairs_at(scree_particle_pairs_args a, int64_t k)
     {
         const int32_t other = scree_lbvh_next_overlap(a.tree, node.box, next, &next);
         if (other < 0) break;
-        scree_pair_batch_add(&batch, a.list, -1 - node.first_child, other);
+        if (scree_spheres_overlap(a.centres, a.radii, -1 - node.first_child, other))
+            scree_pair_batch_add(&batch, a.list, -1 - node.first_child, other);
     }
     scree_pair_list_append(a.list, batch.keys, batch.num_keys);
 }

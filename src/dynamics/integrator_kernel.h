@@ -26,14 +26,14 @@ typedef struct scree_predict_args
 SCREE_FN scree_quat scree_rotate(scree_quat q, scree_vec3 angular_momentum, scree_vec3 inertia, scree_real dt)
 {
     const scree_real quarter = dt * (scree_real)0.25;
-    scree_vec3 a =
-        scree_vec3_scale(scree_angular_velocity(angular_momentum, inertia, scree_mat3_from_quat(q)), quarter);
-    for (int round = 0; round < SCREE_ROTATION_MAX_ROUNDS; ++round)
+    scree_vec3 a = scree_vec3_scale(scree_angular_velocity(angular_momentum, inertia, q), quarter);
+    // a body that turns the same about all axes keeps its angular velocity
+    const int max_rounds = scree_is_isotropic(inertia) ? 0 : SCREE_ROTATION_MAX_ROUNDS;
+    for (int round = 0; round < max_rounds; ++round)
     {
         const scree_quat half = scree_quat_make(1, a.x, a.y, a.z);
         const scree_quat middle = scree_quat_normalize(scree_quat_multiply(half, q));
-        const scree_vec3 next =
-            scree_vec3_scale(scree_angular_velocity(angular_momentum, inertia, scree_mat3_from_quat(middle)), quarter);
+        const scree_vec3 next = scree_vec3_scale(scree_angular_velocity(angular_momentum, inertia, middle), quarter);
         const scree_vec3 change = scree_vec3_sub(next, a);
         a = next;
         if (scree_vec3_dot(change, change) <= 16 * SCREE_REAL_EPSILON * SCREE_REAL_EPSILON * scree_vec3_dot(a, a))
@@ -64,8 +64,8 @@ SCREE_FN void scree_predict_at(scree_predict_args a, int64_t i)
     a.pose[i].orientation = orientation;
     a.pose[i].scale = a.particles.scale[i];
     a.velocity[i] = scree_vec3_add_scaled(velocity, force, half_over_mass);
-    a.angular_velocity[i] = scree_angular_velocity(scree_vec3_add_scaled(momentum, torque, half),
-                                                   a.particles.inertia[i], scree_mat3_from_quat(orientation));
+    a.angular_velocity[i] =
+        scree_angular_velocity(scree_vec3_add_scaled(momentum, torque, half), a.particles.inertia[i], orientation);
 }
 
 typedef struct scree_correct_args
@@ -85,8 +85,8 @@ SCREE_FN void scree_correct_at(scree_correct_args a, int64_t i)
     a.particles.angular_momentum[i] =
         scree_vec3_add_scaled(a.particles.angular_momentum[i], a.particles.torque[i], half);
     a.velocity[i] = a.particles.velocity[i];
-    a.angular_velocity[i] = scree_angular_velocity(a.particles.angular_momentum[i], a.particles.inertia[i],
-                                                   scree_mat3_from_quat(a.particles.orientation[i]));
+    a.angular_velocity[i] =
+        scree_angular_velocity(a.particles.angular_momentum[i], a.particles.inertia[i], a.particles.orientation[i]);
 }
 
 #endif

@@ -71,6 +71,7 @@ scree_status scree_update_neighbours(scree_simulation *simulation)
     input.boxes = b->boxes;
     input.centres = b->centres;
     input.radii = b->radii;
+    input.compares_spheres = true;
     input.walls = b->broad_phase_walls;
     input.num_particles = num_particles;
     input.num_walls = simulation->num_walls;

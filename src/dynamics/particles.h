@@ -31,9 +31,14 @@ typedef struct scree_particles
 scree_status scree_particles_create(scree_particles *particles, int64_t num_particles);
 void scree_particles_destroy(scree_particles *particles);
 
+/// Spheres and cubes turn like this: about the angular momentum, whatever their orientation.
+SCREE_FN bool scree_is_isotropic(scree_vec3 inertia) { return inertia.x == inertia.y && inertia.x == inertia.z; }
+
 /// [rad/s] world axes: R I^-1 R^T L.
-SCREE_FN scree_vec3 scree_angular_velocity(scree_vec3 angular_momentum, scree_vec3 inertia, scree_mat3 rotation)
+SCREE_FN scree_vec3 scree_angular_velocity(scree_vec3 angular_momentum, scree_vec3 inertia, scree_quat orientation)
 {
+    if (scree_is_isotropic(inertia)) return scree_vec3_scale(angular_momentum, 1 / inertia.x);
+    const scree_mat3 rotation = scree_mat3_from_quat(orientation);
     const scree_vec3 body = scree_mat3_apply_transposed(rotation, angular_momentum);
     return scree_mat3_apply(rotation, scree_vec3_make(body.x / inertia.x, body.y / inertia.y, body.z / inertia.z));
 }

@@ -38,8 +38,7 @@ scree_energies scree_simulation_energies(const scree_simulation *simulation)
     for (int64_t i = 0; i < p->num_particles; ++i)
     {
         const scree_vec3 v = p->velocity[i], x = p->position[i];
-        const scree_vec3 w =
-            scree_angular_velocity(p->angular_momentum[i], p->inertia[i], scree_mat3_from_quat(p->orientation[i]));
+        const scree_vec3 w = scree_angular_velocity(p->angular_momentum[i], p->inertia[i], p->orientation[i]);
         const double mass = (double)p->mass[i];
         e.kinetic += 0.5 * mass * (double)scree_vec3_dot(v, v);
         e.rotational += 0.5 * (double)scree_vec3_dot(w, p->angular_momentum[i]);

@@ -108,7 +108,7 @@ void scree_place_particles(scree_simulation *simulation)
         b->pose[i].orientation = particles->orientation[i];
         b->pose[i].scale = particles->scale[i];
         b->velocity[i] = particles->velocity[i];
-        b->angular_velocity[i] = scree_angular_velocity(particles->angular_momentum[i], particles->inertia[i],
-                                                        scree_mat3_from_quat(particles->orientation[i]));
+        b->angular_velocity[i] =
+            scree_angular_velocity(particles->angular_momentum[i], particles->inertia[i], particles->orientation[i]);
     }
 }

@@ -37,9 +37,12 @@ typedef struct scree_work_args
 SCREE_FN scree_real scree_inverse_mass_at(const scree_work_args *a, int32_t b, scree_vec3 arm, scree_vec3 n)
 {
     if (b >= a->num_particles) return 0;
-    const scree_mat3 rotation = scree_mat3_from_quat(a->bodies.pose[b].orientation);
-    const scree_vec3 lever = scree_mat3_apply_transposed(rotation, scree_vec3_cross(arm, n));
     const scree_vec3 inertia = a->inertia[b];
+    const scree_vec3 across = scree_vec3_cross(arm, n);
+    if (inertia.x == inertia.y && inertia.x == inertia.z)
+        return a->bodies.inverse_mass[b] + scree_vec3_dot(across, across) / inertia.x;
+    const scree_mat3 rotation = scree_mat3_from_quat(a->bodies.pose[b].orientation);
+    const scree_vec3 lever = scree_mat3_apply_transposed(rotation, across);
     return a->bodies.inverse_mass[b] + lever.x * lever.x / inertia.x + lever.y * lever.y / inertia.y +
            lever.z * lever.z / inertia.z;
 }

@@ -86,7 +86,7 @@ static void make_scene(scene *s, int round, uint64_t *state)
         s->walls[w] = (scree_broad_phase_wall){s->trees[w].view, random_pose(s->kind->extent, state),
                                                scree_test_random(state) < 0.8};
     }
-    s->input = (scree_broad_phase_input){s->boxes, s->centres, s->radii, s->walls, num, num_walls};
+    s->input = (scree_broad_phase_input){s->boxes, s->centres, s->radii, s->walls, num, num_walls, false};
 }
 
 static void destroy_scene(scene *s)

@@ -26,7 +26,7 @@ static scree_vec3 start_momentum(void)
 
 static double rotational_energy(scree_quat q, scree_vec3 momentum)
 {
-    const scree_vec3 omega = scree_angular_velocity(momentum, inertia, scree_mat3_from_quat(q));
+    const scree_vec3 omega = scree_angular_velocity(momentum, inertia, q);
     return 0.5 * (double)scree_vec3_dot(omega, momentum);
 }
 

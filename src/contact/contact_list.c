@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /// Every array of one entry per contact, by name.
 #define SCREE_CONTACT_ARRAYS(X) \
@@ -28,6 +29,15 @@
     X(spring_energy)            \
     X(elastic_energy)
 
+/// Those that stay zero where all contacts act in points.
+#define SCREE_UNTOUCHED_ARRAYS(X) \
+    X(radius)                     \
+    X(area_vector)                \
+    X(moment)                     \
+    X(is_turning)                 \
+    X(torsion)                    \
+    X(rolling_moment)
+
 scree_status scree_contact_list_reserve(scree_contact_list *list, int64_t num_contacts, int64_t num_pairs)
 {
     if (num_pairs > list->max_pairs || list->first_of_pair == NULL)
@@ -49,6 +59,13 @@ scree_status scree_contact_list_reserve(scree_contact_list *list, int64_t num_co
     }
     SCREE_CONTACT_ARRAYS(SCREE_GROW)
 #undef SCREE_GROW
+#define SCREE_ZERO(array) \
+    memset(list->array + list->max_contacts, 0, (size_t)(max_contacts - list->max_contacts) * sizeof *list->array);
+    if (list->acts_in_points)
+    {
+        SCREE_UNTOUCHED_ARRAYS(SCREE_ZERO)
+    }
+#undef SCREE_ZERO
     list->max_contacts = max_contacts;
     return SCREE_OK;
 }

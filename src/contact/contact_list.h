@@ -12,6 +12,7 @@ typedef struct scree_contact_list
     int64_t num_contacts;
     int64_t max_contacts;
     int64_t max_pairs;
+    bool acts_in_points;    ///< all bodies are spheres and no law has moments: arrays marked * stay zero, untouched
     int64_t *first_of_pair; ///< (num_pairs + 1) contacts of candidate pair p are first_of_pair[p] .. [p + 1] - 1
 
     // geometry, from the narrow phase
@@ -19,27 +20,27 @@ typedef struct scree_contact_list
     int32_t *patch;          ///< 0, 1, ... within the pair
     scree_real *volume;      ///< [m^3]
     scree_real *indentation; ///< [m]
-    scree_real *radius; ///< [m] of the contact across the normal, about the contact point; 0 for a sphere's contact,
+    scree_real *radius; ///< * [m] of the contact across the normal, about the contact point; 0 for a sphere's contact,
                         ///< which acts in a point
     scree_vec3 *normal; ///< [1] unit, from j towards i
-    scree_vec3 *area_vector; ///< [m^2] area of i's surface inside j, outward from i
+    scree_vec3 *area_vector; ///< * [m^2] area of i's surface inside j, outward from i; 0 for a sphere's contact
     scree_vec3 *arm;         ///< [m] contact point minus position of i
 
     // forces, from the force law
     scree_vec3 *normal_force;     ///< [N] on i; that on j is the exact opposite
     scree_vec3 *tangential_force; ///< [N] on i, spring and damping, capped
     scree_real *elastic_force;    ///< [N] elastic part of the normal force
-    scree_vec3 *moment;           ///< [N m] on i, torsion, rocking and rolling resistance
+    scree_vec3 *moment;           ///< * [N m] on i, torsion, rocking and rolling resistance
     scree_real *elastic_work;     ///< [J] change of elastic_energy in this step
     scree_real *spring_work;      ///< [J] change of spring_energy in this step
     uint8_t *is_slipping;         ///< 1 while the tangential force is at the Coulomb limit
-    uint8_t *is_turning;          ///< 1 while torsion or rolling resistance is at its limit
+    uint8_t *is_turning;          ///< * 1 while torsion or rolling resistance is at its limit
 
     // history, carried from step to step
     scree_vec3 *spring_force;         ///< [N] elastic part of the tangential force on i
     scree_real *tangential_stiffness; ///< [N/m] k_t of the last step
-    scree_real *torsion;              ///< [N m] elastic part of the moment about the normal, on i
-    scree_vec3 *rolling_moment;       ///< [N m] elastic part of the rolling resistance on i
+    scree_real *torsion;              ///< * [N m] elastic part of the moment about the normal, on i
+    scree_vec3 *rolling_moment;       ///< * [N m] elastic part of the rolling resistance on i
     scree_real *elastic_energy;       ///< [J] of the normal force
     scree_real *spring_energy;        ///< [J] of the tangential, the torsion and the rolling spring
 } scree_contact_list;

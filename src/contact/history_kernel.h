@@ -59,6 +59,12 @@ SCREE_FN void scree_history_match_at(scree_history_match_args a, int64_t p)
         old_end = old_begin;
         while (old_end < a.num_old && a.old_bodies[old_end].i == key.i && a.old_bodies[old_end].j == key.j) ++old_end;
     }
+    if (end - begin == 1 && old_end - old_begin == 1)
+    {
+        a.old_of_contact[begin] = old_begin;
+        a.is_continued[old_begin] = 1;
+        return;
+    }
     for (int64_t c = begin; c < end; ++c)
     {
         int64_t best = -1;

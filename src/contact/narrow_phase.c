@@ -2,6 +2,7 @@
 
 #include "contact/separating_direction_kernel.h"
 #include "contact/sphere_pairs.h"
+#include "core/buffer.h"
 
 #include <omp.h>
 #include <stdlib.h>
@@ -52,6 +53,9 @@ struct scree_narrow_phase_buffers
     int64_t max_mesh_pairs;
     int32_t max_results; ///< per pair
 
+    scree_sphere *spheres; ///< (max_bodies)
+    int64_t max_bodies;
+
     // a sphere and a mesh
     scree_sphere_contact *found; ///< (num in batch, max_found)
     uint8_t *is_inside;          ///< (num in batch)
@@ -72,6 +76,7 @@ void scree_narrow_phase_destroy(scree_narrow_phase *narrow_phase)
         free(b->results);
         free(b->num_results);
         free(b->memory);
+        free(b->spheres);
         free(b->found);
         free(b->is_inside);
         free(b);
@@ -291,6 +296,22 @@ static scree_status find_overlaps(scree_narrow_phase *narrow_phase, const scree_
     return SCREE_OK;
 }
 
+/// All bodies as spheres, if there are any in the pairs.
+static scree_status place_spheres(struct scree_narrow_phase_buffers *b, const scree_bodies *bodies)
+{
+    if (b->batches[SPHERE_SPHERE].num + b->batches[SPHERE_MESH].num == 0) return SCREE_OK;
+    if (bodies->num_bodies > b->max_bodies)
+    {
+        free(b->spheres);
+        b->max_bodies = bodies->num_bodies;
+        b->spheres = scree_buffer_alloc(b->max_bodies, sizeof *b->spheres);
+        if (b->spheres == NULL) return SCREE_OUT_OF_MEMORY;
+    }
+    const scree_place_spheres_args args = {bodies->shapes, bodies->shape, bodies->pose, b->spheres};
+    scree_place_spheres_launch(args, bodies->num_bodies);
+    return SCREE_OK;
+}
+
 static scree_status find_on_meshes(struct scree_narrow_phase_buffers *b, scree_sphere_pairs_args args)
 {
     const pair_batch *batch = b->batches + SPHERE_MESH;
@@ -378,10 +399,14 @@ scree_status scree_narrow_phase_find(scree_narrow_phase *narrow_phase, const scr
     }
     struct scree_narrow_phase_buffers *b = narrow_phase->buffers;
     scree_sphere_pairs_args args = {0};
-    args.bodies = *bodies;
+    args.shapes = bodies->shapes;
+    args.shape = bodies->shape;
+    args.pose = bodies->pose;
     args.pairs = pairs;
     scree_status status = sort_pairs(b, bodies, pairs, num_pairs);
+    if (status == SCREE_OK) status = place_spheres(b, bodies);
     args.num_contacts = b->num_contacts;
+    args.spheres = b->spheres;
     if (status == SCREE_OK) status = find_overlaps(narrow_phase, bodies, pairs);
     if (status == SCREE_OK) status = find_on_meshes(b, args);
     if (status != SCREE_OK) return status;

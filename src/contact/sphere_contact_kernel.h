@@ -31,16 +31,22 @@ typedef struct scree_sphere_contact
 
 /// Two spheres; `between` leads from the other centre to the one that the normal points to. False: apart, or centres
 /// in one point, where no direction is better than another.
+SCREE_FN bool scree_spheres_touch(scree_vec3 between, scree_real sum_of_radii)
+{
+    // without branches: which pairs touch cannot be foreseen
+    const scree_real squared = scree_vec3_dot(between, between);
+    return (sum_of_radii - scree_sqrt(squared) > 0) & (squared > 0);
+}
+
 SCREE_FN bool scree_sphere_sphere_contact(scree_vec3 between, scree_real sum_of_radii, scree_sphere_contact *contact)
 {
-    const scree_real squared = scree_vec3_dot(between, between);
-    if (!(squared < sum_of_radii * sum_of_radii) || !(squared > 0)) return false;
-    const scree_real distance = scree_sqrt(squared);
+    if (!scree_spheres_touch(between, sum_of_radii)) return false;
+    const scree_real distance = scree_vec3_length(between);
     contact->normal = scree_vec3_make(between.x / distance, between.y / distance, between.z / distance);
     contact->indentation = sum_of_radii - distance;
     contact->weight = 1;
     contact->rank = 0;
-    return contact->indentation > 0;
+    return true;
 }
 
 /// Nearer than this share of the radius two contact points are one: wide enough that the depths between contacts that

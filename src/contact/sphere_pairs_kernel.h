@@ -9,9 +9,35 @@
 #include "contact/narrow_phase.h"
 #include "contact/sphere_contact_kernel.h"
 
+/// A body as spheres see it: where it is, and how large if it is one.
+typedef struct scree_sphere
+{
+    scree_vec3 centre; ///< [m]
+    scree_real radius; ///< [m]; 0: not a sphere
+} scree_sphere;
+
+typedef struct scree_place_spheres_args
+{
+    const scree_shape_view *shapes;
+    const int32_t *shape;   ///< (num_bodies)
+    const scree_pose *pose; ///< (num_bodies)
+    scree_sphere *spheres;  ///< (num_bodies) out
+} scree_place_spheres_args;
+
+/// Body i; what the pairs need of it, in half a cache line.
+SCREE_FN void scree_place_spheres_at(scree_place_spheres_args a, int64_t i)
+{
+    const scree_shape_view *shape = a.shapes + a.shape[i];
+    a.spheres[i].centre = a.pose[i].position;
+    a.spheres[i].radius = shape->kind == SCREE_KIND_SPHERE ? shape->bounding_radius * a.pose[i].scale : 0;
+}
+
 typedef struct scree_sphere_pairs_args
 {
-    scree_bodies bodies;
+    const scree_sphere *spheres;       ///< (num_bodies)
+    const scree_shape_view *shapes;    ///< of all bodies
+    const int32_t *shape;              ///< (num_bodies)
+    const scree_pose *pose;            ///< (num_bodies)
     const scree_candidate_pair *pairs; ///< (num_pairs) all candidate pairs
     const int32_t *batch;              ///< (num) indices of those that this launch is for
     int32_t *num_contacts;             ///< (num_pairs) of each pair; written by the first pass, read by the second
@@ -28,70 +54,58 @@ typedef scree_sphere_pairs_args scree_sphere_sphere_write_args;
 typedef scree_sphere_pairs_args scree_sphere_mesh_count_args;
 typedef scree_sphere_pairs_args scree_sphere_mesh_write_args;
 
-SCREE_FN scree_real scree_sphere_radius(const scree_bodies *bodies, int32_t i)
-{
-    return bodies->shapes[bodies->shape[i]].bounding_radius * bodies->pose[i].scale;
-}
-
-/// Entry c of the list. `effective_radius` is R*; the normal leads towards i, the point lies at `arm` from i.
-SCREE_FN void scree_write_sphere_contact(const scree_contact_list *list, int64_t c, scree_vec3 normal, scree_vec3 arm,
-                                         scree_real effective_radius, const scree_sphere_contact *contact)
-{
-    const scree_real pi = (scree_real)3.14159265358979323846;
-    const scree_real d = contact->indentation, share = contact->weight * contact->weight;
-    list->volume[c] = pi * effective_radius * (d * d) * share;
-    list->indentation[c] = d;
-    list->radius[c] = 0;
-    list->normal[c] = normal;
-    list->area_vector[c] = scree_vec3_scale(normal, -2 * pi * effective_radius * d * contact->weight);
-    list->arm[c] = arm;
-}
-
-SCREE_FN bool scree_sphere_pair_contact(const scree_sphere_pairs_args *a, scree_candidate_pair pair,
-                                        scree_sphere_contact *contact)
-{
-    const scree_vec3 between = scree_vec3_sub(a->bodies.pose[pair.i].position, a->bodies.pose[pair.j].position);
-    return scree_sphere_sphere_contact(
-        between, scree_sphere_radius(&a->bodies, pair.i) + scree_sphere_radius(&a->bodies, pair.j), contact);
-}
+// The address of a part of the arguments is never taken: compilers would then copy all of them for each pair.
 
 SCREE_FN void scree_sphere_sphere_count_at(scree_sphere_sphere_count_args a, int64_t b)
 {
-    scree_sphere_contact contact;
     const int32_t p = a.batch[b];
-    a.num_contacts[p] = scree_sphere_pair_contact(&a, a.pairs[p], &contact) ? 1 : 0;
+    const scree_sphere i = a.spheres[a.pairs[p].i], j = a.spheres[a.pairs[p].j];
+    a.num_contacts[p] = scree_spheres_touch(scree_vec3_sub(i.centre, j.centre), i.radius + j.radius);
+}
+
+/// Volume of a sphere's contact; R* is `effective_radius`.
+SCREE_FN scree_real scree_sphere_contact_volume(scree_real effective_radius, scree_real indentation, scree_real weight)
+{
+    const scree_real pi = (scree_real)3.14159265358979323846;
+    return pi * effective_radius * (indentation * indentation) * (weight * weight);
+}
+
+/// Marks contact c as one that acts in a point.
+SCREE_FN void scree_write_point(scree_contact_list list, int64_t c)
+{
+    if (list.acts_in_points) return;
+    list.radius[c] = 0;
+    list.area_vector[c] = scree_vec3_zero();
 }
 
 SCREE_FN void scree_sphere_sphere_write_at(scree_sphere_sphere_write_args a, int64_t b)
 {
     const int32_t p = a.batch[b];
     const scree_candidate_pair pair = a.pairs[p];
+    const scree_sphere i = a.spheres[pair.i], j = a.spheres[pair.j];
     scree_sphere_contact contact;
-    if (!scree_sphere_pair_contact(&a, pair, &contact)) return;
+    if (!scree_sphere_sphere_contact(scree_vec3_sub(i.centre, j.centre), i.radius + j.radius, &contact)) return;
     const int64_t c = a.list.first_of_pair[p];
-    const scree_real r_i = scree_sphere_radius(&a.bodies, pair.i), r_j = scree_sphere_radius(&a.bodies, pair.j);
-    const scree_vec3 arm = scree_vec3_scale(contact.normal, contact.indentation / 2 - r_i);
+    const scree_real effective_radius = i.radius * j.radius / (i.radius + j.radius);
     a.list.bodies[c] = pair;
     a.list.patch[c] = 0;
-    scree_write_sphere_contact(&a.list, c, contact.normal, arm, r_i * r_j / (r_i + r_j), &contact);
-}
-
-/// The body of a pair that is the sphere; the other is the mesh.
-SCREE_FN bool scree_is_first_the_sphere(const scree_bodies *bodies, scree_candidate_pair pair)
-{
-    return bodies->shapes[bodies->shape[pair.i]].kind == SCREE_KIND_SPHERE;
+    a.list.volume[c] = scree_sphere_contact_volume(effective_radius, contact.indentation, 1);
+    a.list.indentation[c] = contact.indentation;
+    a.list.normal[c] = contact.normal;
+    a.list.arm[c] = scree_vec3_scale(contact.normal, contact.indentation / 2 - i.radius);
+    scree_write_point(a.list, c);
 }
 
 SCREE_FN void scree_sphere_mesh_count_at(scree_sphere_mesh_count_args a, int64_t b)
 {
     const scree_candidate_pair pair = a.pairs[a.batch[b]];
-    const bool is_first = scree_is_first_the_sphere(&a.bodies, pair);
-    const int32_t sphere = is_first ? pair.i : pair.j, mesh = is_first ? pair.j : pair.i;
-    const scree_sphere_on_mesh on_mesh = scree_sphere_to_mesh(
-        a.bodies.pose[sphere].position, scree_sphere_radius(&a.bodies, sphere), a.bodies.pose + mesh);
+    const bool is_first = a.spheres[pair.i].radius > 0; // is the sphere
+    const scree_sphere sphere = a.spheres[is_first ? pair.i : pair.j];
+    const int32_t mesh = is_first ? pair.j : pair.i;
     bool is_inside;
-    a.num_contacts[a.batch[b]] = scree_sphere_mesh_contacts(a.bodies.shapes + a.bodies.shape[mesh], on_mesh,
-                                                            a.found + b * a.max_found, a.max_found, &is_inside);
+    a.num_contacts[a.batch[b]] = scree_sphere_mesh_contacts(
+        a.shapes + a.shape[mesh], scree_sphere_to_mesh(sphere.centre, sphere.radius, a.pose + mesh),
+        a.found + b * a.max_found, a.max_found, &is_inside);
     a.is_inside[b] = is_inside ? 1 : 0;
 }
 
@@ -99,23 +113,22 @@ SCREE_FN void scree_sphere_mesh_write_at(scree_sphere_mesh_write_args a, int64_t
 {
     const int32_t p = a.batch[b];
     const scree_candidate_pair pair = a.pairs[p];
-    const bool is_first = scree_is_first_the_sphere(&a.bodies, pair);
-    const scree_real radius = scree_sphere_radius(&a.bodies, is_first ? pair.i : pair.j);
+    const bool is_first = a.spheres[pair.i].radius > 0;
+    const scree_sphere sphere = a.spheres[is_first ? pair.i : pair.j];
     for (int32_t k = 0; k < a.num_contacts[p]; ++k)
     {
         const int64_t c = a.list.first_of_pair[p] + k;
-        const scree_sphere_contact *contact = a.found + b * a.max_found + k;
-        scree_vec3 normal = contact->normal;
-        scree_vec3 arm = scree_vec3_scale(normal, contact->indentation / 2 - radius);
-        if (!is_first)
-        {
-            const scree_vec3 centre = a.bodies.pose[pair.j].position;
-            arm = scree_vec3_add(scree_vec3_sub(centre, a.bodies.pose[pair.i].position), arm);
-            normal = scree_vec3_negate(normal);
-        }
+        const scree_sphere_contact contact = a.found[b * a.max_found + k];
+        const scree_vec3 arm = scree_vec3_scale(contact.normal, contact.indentation / 2 - sphere.radius);
+        const scree_vec3 to_sphere = scree_vec3_sub(sphere.centre, a.spheres[pair.i].centre);
+        const scree_vec3 normal = is_first ? contact.normal : scree_vec3_negate(contact.normal);
         a.list.bodies[c] = pair;
         a.list.patch[c] = k;
-        scree_write_sphere_contact(&a.list, c, normal, arm, radius, contact);
+        a.list.volume[c] = scree_sphere_contact_volume(sphere.radius, contact.indentation, contact.weight);
+        a.list.indentation[c] = contact.indentation;
+        a.list.normal[c] = normal;
+        a.list.arm[c] = is_first ? arm : scree_vec3_add(to_sphere, arm);
+        scree_write_point(a.list, c);
     }
 }
 

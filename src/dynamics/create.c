@@ -247,10 +247,22 @@ static scree_status check_initial_contacts(const scree_simulation *s, scree_repo
     return num_deep > 0 ? SCREE_INVALID_INPUT : SCREE_OK;
 }
 
+/// True if every contact acts in a point: all particles are spheres, and no law has a moment of its own for them.
+static bool are_contacts_points(const scree_simulation *s)
+{
+    bool has_extent = s->particles.num_particles == 0;
+    for (int64_t i = 0; i < s->particles.num_particles && !has_extent; ++i)
+        has_extent = s->shape_views[s->particles.shape[i]].kind != SCREE_KIND_SPHERE;
+    for (int32_t k = 0; k < s->num_materials * s->num_materials; ++k)
+        has_extent |= s->laws[k].rolling != SCREE_ROLLING_NONE;
+    return !has_extent;
+}
+
 /// Contacts and forces of time 0.
 static scree_status start(scree_simulation *s, scree_report *report)
 {
     s->buffers->skin = choose_skin(s);
+    s->contacts.acts_in_points = s->old_contacts.acts_in_points = are_contacts_points(s);
     s->counters.smallest_critical_step = INFINITY;
     s->narrow_phase.options.scheme =
         strcmp(s->scene->solver.overlap_scheme, "hierarchy") == 0 ? SCREE_OVERLAP_HIERARCHY : SCREE_OVERLAP_FILTERED;

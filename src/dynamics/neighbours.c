@@ -46,7 +46,7 @@ static void add_travel(scree_simulation *s)
 scree_status scree_update_neighbours(scree_simulation *simulation)
 {
     scree_step_buffers *b = simulation->buffers;
-    add_travel(simulation);
+    if (b->has_travel) add_travel(simulation);
     if (!is_search_due(simulation)) return SCREE_OK;
     const int64_t num_particles = simulation->particles.num_particles;
 

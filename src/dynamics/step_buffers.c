@@ -46,6 +46,7 @@ scree_status scree_step_buffers_create(scree_simulation *simulation)
         b->inverse_radius[i] = (scree_real)(1 / equal_volume_radius(simulation, i));
         b->shape[i] = simulation->particles.shape[i];
         b->material[i] = simulation->particles.material[i];
+        b->has_travel |= simulation->shape_views[b->shape[i]].kind == SCREE_KIND_MESH;
     }
     for (size_t w = 0; w < num_walls; ++w)
     {

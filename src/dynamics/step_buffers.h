@@ -20,6 +20,7 @@ typedef struct scree_step_buffers
     // neighbours
     scree_pose *searched_pose; ///< (num_bodies) poses of the last search
     scree_pose *last_pose;     ///< (num_bodies) poses of the last step
+    bool has_travel;           ///< some particles are meshes, so travel is kept
     scree_real *travel;        ///< [m] (num_bodies) bound of the way of any point of the body since the last search
     scree_box *boxes;          ///< (num_particles)
     scree_vec3 *centres;       ///< (num_particles)

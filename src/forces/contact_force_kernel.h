@@ -51,22 +51,24 @@ SCREE_FN void scree_rolling_pair(const scree_body_motion *bodies, int32_t i, int
 SCREE_FN void scree_contact_force_at(scree_contact_force_args a, int64_t c)
 {
     const scree_candidate_pair pair = a.contacts.bodies[c];
-    const scree_force_law *law =
-        a.laws + (int64_t)a.bodies.material[pair.i] * a.num_materials + a.bodies.material[pair.j];
+    const scree_body_motion bodies =
+        a.bodies; // with the address of a part, compilers would copy all arguments each time
+    const scree_force_law *law = a.laws + (int64_t)bodies.material[pair.i] * a.num_materials + bodies.material[pair.j];
 
     // what is known of the contact, its history included
     scree_contact_kinematics k;
     k.volume = a.contacts.volume[c];
     k.indentation = a.contacts.indentation[c];
-    k.radius = a.contacts.radius[c];
+    const bool has_extent = !a.contacts.acts_in_points;
+    k.radius = has_extent ? a.contacts.radius[c] : 0;
     k.normal = a.contacts.normal[c];
-    k.relative_velocity = scree_relative_velocity(&a.bodies, pair.i, pair.j, a.contacts.arm[c]);
-    k.relative_rotation = scree_vec3_sub(a.bodies.angular_velocity[pair.i], a.bodies.angular_velocity[pair.j]);
-    k.effective_mass = 1 / (a.bodies.inverse_mass[pair.i] + a.bodies.inverse_mass[pair.j]);
+    k.relative_velocity = scree_relative_velocity(&bodies, pair.i, pair.j, a.contacts.arm[c]);
+    k.relative_rotation = scree_vec3_sub(bodies.angular_velocity[pair.i], bodies.angular_velocity[pair.j]);
+    k.effective_mass = 1 / (bodies.inverse_mass[pair.i] + bodies.inverse_mass[pair.j]);
     k.time_step = a.time_step;
     k.effective_radius = 0;
     k.rolling_inertia = 0;
-    if (law->rolling != SCREE_ROLLING_NONE) scree_rolling_pair(&a.bodies, pair.i, pair.j, &k);
+    if (law->rolling != SCREE_ROLLING_NONE) scree_rolling_pair(&bodies, pair.i, pair.j, &k);
     k.spring_force = scree_vec3_zero();
     k.torsion = 0;
     k.rolling_moment = scree_vec3_zero();
@@ -77,8 +79,8 @@ SCREE_FN void scree_contact_force_at(scree_contact_force_args a, int64_t c)
     {
         k.spring_force = a.old_contacts.spring_force[old];
         k.tangential_stiffness = a.old_contacts.tangential_stiffness[old];
-        k.torsion = a.old_contacts.torsion[old];
-        k.rolling_moment = a.old_contacts.rolling_moment[old];
+        if (has_extent) k.torsion = a.old_contacts.torsion[old];
+        if (has_extent) k.rolling_moment = a.old_contacts.rolling_moment[old];
         spring_energy = a.old_contacts.spring_energy[old];
         elastic_energy = a.old_contacts.elastic_energy[old];
     }
@@ -92,14 +94,15 @@ SCREE_FN void scree_contact_force_at(scree_contact_force_args a, int64_t c)
     a.contacts.is_slipping[c] = f.is_slipping ? 1 : 0;
     a.contacts.spring_force[c] = f.spring_force;
     a.contacts.tangential_stiffness[c] = f.tangential_stiffness;
-    a.contacts.moment[c] = f.moment;
-    a.contacts.is_turning[c] = f.is_turning ? 1 : 0;
-    a.contacts.torsion[c] = f.torsion;
-    a.contacts.rolling_moment[c] = f.rolling_moment;
     a.contacts.elastic_energy[c] = f.elastic_energy;
     a.contacts.elastic_work[c] = f.elastic_energy - elastic_energy;
     a.contacts.spring_energy[c] = f.spring_energy;
     a.contacts.spring_work[c] = f.spring_energy - spring_energy;
+    if (!has_extent) return;
+    a.contacts.moment[c] = f.moment;
+    a.contacts.is_turning[c] = f.is_turning ? 1 : 0;
+    a.contacts.torsion[c] = f.torsion;
+    a.contacts.rolling_moment[c] = f.rolling_moment;
 }
 
 #endif

@@ -29,7 +29,8 @@ SCREE_FN void scree_gather_at(scree_gather_args a, int64_t i)
         {
             const scree_candidate_pair bodies = a.contacts.bodies[c];
             scree_vec3 f = scree_vec3_add(a.contacts.normal_force[c], a.contacts.tangential_force[c]);
-            scree_vec3 arm = a.contacts.arm[c], moment = a.contacts.moment[c];
+            scree_vec3 arm = a.contacts.arm[c];
+            scree_vec3 moment = a.contacts.acts_in_points ? scree_vec3_zero() : a.contacts.moment[c];
             if (bodies.i != (int32_t)i)
             {
                 const scree_vec3 point = scree_vec3_add(a.pose[bodies.i].position, arm);

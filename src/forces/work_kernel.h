@@ -37,12 +37,11 @@ typedef struct scree_work_args
 SCREE_FN scree_real scree_inverse_mass_at(const scree_work_args *a, int32_t b, scree_vec3 arm, scree_vec3 n)
 {
     if (b >= a->num_particles) return 0;
+    // the normal of a sphere goes through its centre
+    if (a->contacts.acts_in_points) return a->bodies.inverse_mass[b];
     const scree_vec3 inertia = a->inertia[b];
-    const scree_vec3 across = scree_vec3_cross(arm, n);
-    if (inertia.x == inertia.y && inertia.x == inertia.z)
-        return a->bodies.inverse_mass[b] + scree_vec3_dot(across, across) / inertia.x;
     const scree_mat3 rotation = scree_mat3_from_quat(a->bodies.pose[b].orientation);
-    const scree_vec3 lever = scree_mat3_apply_transposed(rotation, across);
+    const scree_vec3 lever = scree_mat3_apply_transposed(rotation, scree_vec3_cross(arm, n));
     return a->bodies.inverse_mass[b] + lever.x * lever.x / inertia.x + lever.y * lever.y / inertia.y +
            lever.z * lever.z / inertia.z;
 }
@@ -63,10 +62,11 @@ SCREE_FN void scree_work_of_contact(const scree_work_args *a, int64_t c, scree_w
 
     // tangential and moments: what the springs do not take up is lost
     const scree_vec3 rotation = scree_vec3_sub(a->bodies.angular_velocity[pair.i], a->bodies.angular_velocity[pair.j]);
-    const scree_real power =
-        scree_vec3_dot(a->contacts.tangential_force[c], v) + scree_vec3_dot(a->contacts.moment[c], rotation);
+    const bool has_extent = !a->contacts.acts_in_points;
+    const scree_vec3 moment = has_extent ? a->contacts.moment[c] : scree_vec3_zero();
+    const scree_real power = scree_vec3_dot(a->contacts.tangential_force[c], v) + scree_vec3_dot(moment, rotation);
     const scree_real lost = -power * a->time_step - a->contacts.spring_work[c];
-    if (a->contacts.is_slipping[c] || a->contacts.is_turning[c]) sums->friction += lost;
+    if (a->contacts.is_slipping[c] || (has_extent && a->contacts.is_turning[c])) sums->friction += lost;
     else sums->damping += lost;
 
     // a moving wall works on the particle
@@ -78,8 +78,7 @@ SCREE_FN void scree_work_of_contact(const scree_work_args *a, int64_t c, scree_w
             scree_vec3_add(a->bodies.velocity[pair.j], scree_vec3_cross(a->bodies.angular_velocity[pair.j], arm_j));
         const scree_vec3 f = scree_vec3_add(a->contacts.normal_force[c], a->contacts.tangential_force[c]);
         sums->input +=
-            (scree_vec3_dot(f, v_wall) + scree_vec3_dot(a->contacts.moment[c], a->bodies.angular_velocity[pair.j])) *
-            a->time_step;
+            (scree_vec3_dot(f, v_wall) + scree_vec3_dot(moment, a->bodies.angular_velocity[pair.j])) * a->time_step;
     }
 
     // the stiffer of the two counts

@@ -33,6 +33,7 @@ SCREE_DECLARE_LAUNCH_CUDA(scree_pair_second_begin)
 SCREE_DECLARE_LAUNCH_CUDA(scree_pair_row_begin)
 SCREE_DECLARE_LAUNCH_CUDA(scree_pair_rows)
 SCREE_DECLARE_LAUNCH_CUDA(scree_overlap_pairs)
+SCREE_DECLARE_LAUNCH_CUDA(scree_place_spheres)
 SCREE_DECLARE_LAUNCH_CUDA(scree_sphere_sphere_count)
 SCREE_DECLARE_LAUNCH_CUDA(scree_sphere_sphere_write)
 SCREE_DECLARE_LAUNCH_CUDA(scree_sphere_mesh_count)
@@ -417,10 +418,14 @@ static void find_overlaps_on(side &where)
     scree_overlap_workspace_destroy(workspace);
 
     scree_overlap_pairs_args args = {};
-    args.bodies.shapes = shapes_on(where);
-    args.bodies.shape = where.copy(b->shape, num_bodies);
-    args.bodies.pose = where.copy(b->pose, num_bodies);
-    args.bodies.num_bodies = num_bodies;
+    args.shapes = shapes_on(where);
+    args.shape = where.copy(b->shape, num_bodies);
+    args.pose = where.copy(b->pose, num_bodies);
+    scree_sphere *spheres = where.make<scree_sphere>(num_bodies);
+    const scree_place_spheres_args place = {args.shapes, args.shape, args.pose, spheres};
+    LAUNCH_ON(where, scree_place_spheres, place, num_bodies);
+    where.keep(spheres, num_bodies);
+    args.spheres = spheres;
     args.pairs = where.copy(pairs.data(), num_pairs);
     args.slices = where.copy(slices.data(), num_pairs);
     args.results = where.make<scree_overlap_result>(num_pairs);

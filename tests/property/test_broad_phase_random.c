@@ -72,10 +72,13 @@ static void make_scene(scene *s, int round, uint64_t *state)
             s->boxes[i].upper = scree_vec3_scale(s->boxes[i].upper, (scree_real)0.01);
         }
     }
+    // spheres around the boxes, or smaller ones, which then decide as well
+    const bool compares_spheres = scree_test_random(state) < 0.5;
+    const scree_real share = compares_spheres ? (scree_real)(0.5 + 0.5 * scree_test_random(state)) : 1;
     for (int64_t i = 0; i < num; ++i)
     {
         s->centres[i] = scree_morton_middle(s->boxes[i]);
-        s->radii[i] = scree_vec3_length(scree_vec3_sub(s->boxes[i].upper, s->centres[i]));
+        s->radii[i] = share * scree_vec3_length(scree_vec3_sub(s->boxes[i].upper, s->centres[i]));
     }
     const int64_t num_walls = (int64_t)(scree_test_random(state) * (MAX_WALLS + 1));
     for (int64_t w = 0; w < num_walls; ++w)
@@ -86,7 +89,7 @@ static void make_scene(scene *s, int round, uint64_t *state)
         s->walls[w] = (scree_broad_phase_wall){s->trees[w].view, random_pose(s->kind->extent, state),
                                                scree_test_random(state) < 0.8};
     }
-    s->input = (scree_broad_phase_input){s->boxes, s->centres, s->radii, s->walls, num, num_walls, false};
+    s->input = (scree_broad_phase_input){s->boxes, s->centres, s->radii, s->walls, num, num_walls, compares_spheres};
 }
 
 static void destroy_scene(scene *s)
@@ -105,6 +108,14 @@ static bool boxes_meet(const scree_box *a, const scree_box *b)
 {
     return !(a->upper.x < b->lower.x || b->upper.x < a->lower.x || a->upper.y < b->lower.y || b->upper.y < a->lower.y ||
              a->upper.z < b->lower.z || b->upper.z < a->lower.z);
+}
+
+/// In the same roundings as the search: the sums have no others.
+static bool spheres_meet(const scene *s, int64_t i, int64_t j)
+{
+    const scree_real x = s->centres[i].x - s->centres[j].x, y = s->centres[i].y - s->centres[j].y;
+    const scree_real z = s->centres[i].z - s->centres[j].z, sum = s->radii[i] + s->radii[j];
+    return x * x + y * y + z * z <= sum * sum;
 }
 
 /// How far sphere i is from the nearest box of wall w, in the world, over its coordinates' size: negative if it reaches
@@ -146,7 +157,8 @@ static double relative_gap(const scene *s, int64_t i, int64_t w)
 /// 1: must be found, 0: must not, -1: within the rounding that the search adds to spheres, 48 eps.
 static int are_candidates(const scene *s, int64_t i, int64_t j)
 {
-    if (j < s->input.num_particles) return boxes_meet(s->boxes + i, s->boxes + j);
+    if (j < s->input.num_particles)
+        return boxes_meet(s->boxes + i, s->boxes + j) && (!s->input.compares_spheres || spheres_meet(s, i, j));
     const int64_t w = j - s->input.num_particles;
     if (!s->walls[w].is_present) return 0;
     const double gap = relative_gap(s, i, w);

@@ -310,6 +310,8 @@ static uint64_t *find_keys_on(side &where, int32_t id_bits, int64_t *num_keys)
     for (scree_broad_phase_wall &wall : walls) wall.tree = tree_on(where, wall.tree);
     wall_args.centres = where.copy(b->centres, num_particles);
     wall_args.radii = where.copy(b->radii, num_particles);
+    particle_args.centres = wall_args.centres;
+    particle_args.radii = wall_args.radii;
     wall_args.walls = where.copy(walls.data(), s->num_walls);
     wall_args.num_particles = num_particles;
     wall_args.num_walls = s->num_walls;
@@ -418,14 +420,10 @@ static void find_overlaps_on(side &where)
     scree_overlap_workspace_destroy(workspace);
 
     scree_overlap_pairs_args args = {};
-    args.shapes = shapes_on(where);
-    args.shape = where.copy(b->shape, num_bodies);
-    args.pose = where.copy(b->pose, num_bodies);
-    scree_sphere *spheres = where.make<scree_sphere>(num_bodies);
-    const scree_place_spheres_args place = {args.shapes, args.shape, args.pose, spheres};
-    LAUNCH_ON(where, scree_place_spheres, place, num_bodies);
-    where.keep(spheres, num_bodies);
-    args.spheres = spheres;
+    args.bodies.shapes = shapes_on(where);
+    args.bodies.shape = where.copy(b->shape, num_bodies);
+    args.bodies.pose = where.copy(b->pose, num_bodies);
+    args.bodies.num_bodies = num_bodies;
     args.pairs = where.copy(pairs.data(), num_pairs);
     args.slices = where.copy(slices.data(), num_pairs);
     args.results = where.make<scree_overlap_result>(num_pairs);
@@ -460,10 +458,14 @@ static void find_spheres_on(side &where, int kind)
         if (kind_of(p) == kind) batch.push_back((int32_t)p);
     const int64_t num = (int64_t)batch.size();
     scree_sphere_pairs_args args = {};
-    args.bodies.shapes = shapes_on(where);
-    args.bodies.shape = where.copy(b->shape, num_bodies);
-    args.bodies.pose = where.copy(b->pose, num_bodies);
-    args.bodies.num_bodies = num_bodies;
+    args.shapes = shapes_on(where);
+    args.shape = where.copy(b->shape, num_bodies);
+    args.pose = where.copy(b->pose, num_bodies);
+    scree_sphere *spheres = where.make<scree_sphere>(num_bodies);
+    const scree_place_spheres_args place = {args.shapes, args.shape, args.pose, spheres};
+    LAUNCH_ON(where, scree_place_spheres, place, num_bodies);
+    where.keep(spheres, num_bodies);
+    args.spheres = spheres;
     args.pairs = where.copy(s->broad_phase.pairs, num_pairs);
     args.batch = where.copy(batch.data(), num);
     args.num_contacts = where.zeros<int32_t>(num_pairs);

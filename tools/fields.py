@@ -52,7 +52,7 @@ class Fields:
 
     def title(self, run):
         periods = int(self.averages["num_periods"])
-        return f"{run.name}: mean over {periods} periods of {self.averages['period']:.3g} s"
+        return f"{run.name}: mean over {periods} period{'s' if periods > 1 else ''} of {self.averages['period']:.3g} s"
 
 
 def draw_plane(fields, run, axis, path, with_arrows):

@@ -107,6 +107,11 @@ static void check_shape(scree_scene_reader *reader, const scree_yaml_node *shape
     if (!is_turned) warn_unused_key(reader, shape, "segments", of, "the source is not turned");
     if (!is_file && !is_rock && !is_sphere)
         warn_unused_key(reader, shape, "triangles", of, "the source fixes the number");
+    if (is_sphere && has_triangles && triangles == 0)
+    {
+        warn_unused_key(reader, shape, "offset", of, "a true sphere is no mesh");
+        warn_unused_key(reader, shape, "copies", of, "a true sphere is no mesh");
+    }
     if (!is_rock) warn_unused_key(reader, shape, "seed", of, "only rocks are drawn at random");
 }
 

@@ -42,6 +42,7 @@ SCREE_DECLARE_LAUNCH_CUDA(scree_history_match)
 SCREE_DECLARE_LAUNCH_CUDA(scree_contact_force)
 SCREE_DECLARE_LAUNCH_CUDA(scree_gather)
 SCREE_DECLARE_LAUNCH_CUDA(scree_work)
+SCREE_DECLARE_LAUNCH_CUDA(scree_collision)
 SCREE_DECLARE_LAUNCH_CUDA(scree_wall_load)
 SCREE_DECLARE_LAUNCH_CUDA(scree_predict)
 SCREE_DECLARE_LAUNCH_CUDA(scree_correct)
@@ -616,6 +617,29 @@ static void test_wall_loads()
         });
 }
 
+static void test_collisions()
+{
+    check_two_sides(
+        [](side &where)
+        {
+            const int64_t n = s->contacts.num_contacts, num_old = s->old_contacts.num_contacts;
+            std::vector<double> old((size_t)num_old + 1);
+            for (int64_t k = 0; k < num_old; ++k) old[(size_t)k] = 1e-3 / (double)(k + 1);
+            scree_collision_args args = {};
+            args.contacts = contacts_on(where, s->contacts, s->broad_phase.num_pairs);
+            args.bodies = motion_on(where);
+            args.old_of_contact = where.copy(b->old_of_contact, n);
+            args.old_normal = where.copy(old.data(), num_old + 1);
+            args.old_tangential = where.copy(old.data(), num_old + 1);
+            args.time_step = s->time_step;
+            args.normal = where.make<double>(n);
+            args.tangential = where.make<double>(n);
+            LAUNCH_ON(where, scree_collision, args, n);
+            where.keep(args.normal, n);
+            where.keep(args.tangential, n);
+        });
+}
+
 int main()
 {
     scene_run_start(&run, scene_text);
@@ -639,6 +663,7 @@ int main()
     SCREE_RUN(test_forces);
     SCREE_RUN(test_work);
     SCREE_RUN(test_wall_loads);
+    SCREE_RUN(test_collisions);
     scene_run_end(&run);
     return SCREE_TEST_END();
 }

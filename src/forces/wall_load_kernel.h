@@ -48,7 +48,8 @@ SCREE_FN void scree_wall_load_at(scree_wall_load_args a, int64_t b)
         {
             const scree_vec3 point = scree_vec3_add(a.pose[bodies.i].position, a.contacts.arm[c]);
             const scree_vec3 arm = scree_vec3_sub(point, axis.centre);
-            along = scree_vec3_add(scree_vec3_cross(arm, along), a.contacts.moment[c]);
+            along = scree_vec3_cross(arm, along);
+            if (!a.contacts.acts_in_points) along = scree_vec3_add(along, a.contacts.moment[c]);
         }
         sums[m] += scree_vec3_dot(along, axis.direction);
     }

@@ -124,10 +124,13 @@ static void test_means_of_free_flight(void)
     scene_run_end(&run);
 }
 
+#define CUBE "{name: cube, source: box, size: [0.012, 0.011, 0.01]}"
+#define BALL "{name: cube, source: sphere, size: 0.0116}           "
+
 // a few cubes in a drum, with collisions
 static const char drum_text[] =
     "name: drum\ntime: {end: 0.6, step: 5e-5}\n" HEAD "shapes:\n"
-    "  - {name: cube, source: box, size: [0.012, 0.011, 0.01]}\n"
+    "  - " CUBE "\n"
     "  - name: drum\n    source: turned\n    segments: 24\n"
     "    profile: [{radius: 0, height: -0.03}, {radius: 0.06, height: -0.03}, {radius: 0.06, height: 0.03},\n"
     "      {radius: 0, height: 0.03}, {radius: 0, height: 0.02}, {radius: 0.05, height: 0.02},\n"
@@ -143,10 +146,10 @@ static const char drum_text[] =
     "  wall: drum, samples: 50, energy_bins: 40, energy_min: 1e-9, energy_max: 1e-2}\n";
 
 /// All that collisions have lost, ended or not, is what the balance of energy says is lost or in springs.
-static void test_collisions_lose_what_the_balance_says(void)
+static void check_collisions(const char *text)
 {
     scene_run run;
-    scene_run_start(&run, drum_text);
+    scene_run_start(&run, text);
     if (run.simulation == NULL) return;
     const scree_simulation *s = run.simulation;
     const scree_averages *averages = &s->averages;
@@ -186,6 +189,16 @@ static void test_collisions_lose_what_the_balance_says(void)
     SCREE_CHECK(s->wall_loads.marked_work[0] != 0);
     SCREE_CHECK_CLOSE(averages->works.total[0], s->wall_loads.marked_work[0], 4 * EPS * fabs(averages->works.total[0]));
     scene_run_end(&run);
+}
+
+static void test_collisions_lose_what_the_balance_says(void) { check_collisions(drum_text); }
+
+static void test_collisions_of_true_spheres(void)
+{
+    char text[sizeof drum_text];
+    strcpy(text, drum_text);
+    memcpy(strstr(text, CUBE), BALL, strlen(BALL));
+    check_collisions(text);
 }
 
 static bool same_averages(const scree_averages *a, const scree_averages *b)
@@ -263,6 +276,7 @@ int main(void)
     SCREE_RUN(test_cells_hold_all_that_the_particles_bring);
     SCREE_RUN(test_means_of_free_flight);
     SCREE_RUN(test_collisions_lose_what_the_balance_says);
+    SCREE_RUN(test_collisions_of_true_spheres);
     SCREE_RUN(test_restart_and_threads_change_no_bit);
     return SCREE_TEST_END();
 }

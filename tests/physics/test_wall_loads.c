@@ -8,10 +8,13 @@
     "materials: [{name: stone, density: 2500, youngs_modulus: 1e6, poisson_ratio: 0.25}]\n" \
     "contact_laws: [{materials: [stone, stone], friction_coefficient: 0.4, damping_ratio: 0.3}]\n"
 
+#define CUBE "{name: cube, source: box, size: [0.008, 0.007, 0.006]}"
+#define BALL "{name: cube, source: sphere, size: 0.008}             "
+
 // a drum about y with four lifters, a third full; it starts after a while and stops before the end
 static const char drum_text[] =
     "name: drum\ntime: {end: 0.5, step: 5e-5}\n" HEAD "shapes:\n"
-    "  - {name: cube, source: box, size: [0.008, 0.007, 0.006]}\n"
+    "  - " CUBE "\n"
     "  - name: drum\n    source: turned\n    segments: 24\n"
     "    profile: [{radius: 0, height: -0.03}, {radius: 0.06, height: -0.03}, {radius: 0.06, height: 0.03},\n"
     "      {radius: 0, height: 0.03}, {radius: 0, height: 0.02}, {radius: 0.05, height: 0.02},\n"
@@ -51,10 +54,10 @@ static double gravity_torque(const scree_particles *p)
 
 /// Velocity Verlet changes x cross m v by exactly the trapezoids of the torque, so the angular momentum of the
 /// particles is the sum of the torques of walls and gravity but for rounding.
-static void test_torque_is_what_the_angular_momentum_says(void)
+static void check_torque(const char *text)
 {
     scene_run run;
-    scene_run_start(&run, drum_text);
+    scene_run_start(&run, text);
     if (run.simulation == NULL) return;
     scree_simulation *s = run.simulation;
     const double dt = scree_simulation_time_step(s), start = angular_momentum(&s->particles);
@@ -103,6 +106,16 @@ static void test_torque_is_what_the_angular_momentum_says(void)
                       1e-12 * fabs(revolution_work));
     SCREE_CHECK(scree_simulation_wall_load(s, 1).revolution_power != 0);
     scene_run_end(&run);
+}
+
+static void test_torque_is_what_the_angular_momentum_says(void) { check_torque(drum_text); }
+
+static void test_torque_of_true_spheres(void)
+{
+    char text[sizeof drum_text];
+    strcpy(text, drum_text);
+    memcpy(strstr(text, CUBE), BALL, strlen(BALL));
+    check_torque(text);
 }
 
 /// A block put on a belt: the belt gives it the momentum m v, so it works m v^2, half of which ends as heat.
@@ -164,6 +177,7 @@ static void test_same_bits_for_any_number_of_threads(void)
 int main(void)
 {
     SCREE_RUN(test_torque_is_what_the_angular_momentum_says);
+    SCREE_RUN(test_torque_of_true_spheres);
     SCREE_RUN(test_belt_works_twice_the_energy_it_gives);
     SCREE_RUN(test_same_bits_for_any_number_of_threads);
     return SCREE_TEST_END();

@@ -61,7 +61,8 @@ typedef struct run_state
     double initial_energy;
     double start_clock;
     int64_t start_step;
-    bool has_warned; ///< of a time step that is too long
+    bool has_warned;        ///< of a time step that is too long
+    bool has_warned_inside; ///< of a sphere whose centre is inside a solid
     bool is_terminal;
     double shown_clock; ///< when progress was last shown
     int64_t shown_step;
@@ -222,6 +223,20 @@ static void warn_of_time_step(run_state *run)
     tell_report(run);
 }
 
+/// A sphere deeper in a mesh than its radius, once: it may leave on the wrong side.
+static void warn_of_inside(run_state *run)
+{
+    if (run->has_warned_inside || scree_simulation_counters(run->simulation).num_inside == 0) return;
+    run->has_warned_inside = true;
+    scree_report_warn(
+        &run->report,
+        "t = %g s: the centre of a sphere is inside the solid of a wall or a particle, below the surface; "
+        "it is pushed out where the surface is nearest. Contacts are too soft for the speeds, or the step "
+        "too long: raise youngs_modulus or choose a smaller time.step",
+        scree_simulation_time(run->simulation));
+    tell_report(run);
+}
+
 /// A word of a shell command, quoted where needed.
 static void print_word(const char *word)
 {
@@ -363,6 +378,7 @@ static scree_status advance(run_state *run)
         if (status == SCREE_OK) status = write_outputs(run, step, step == num_steps);
         if (status != SCREE_OK) break;
         warn_of_time_step(run);
+        warn_of_inside(run);
         show_progress_sometimes(run);
     }
     return status;

@@ -76,6 +76,7 @@ scree_status scree_update_contacts(scree_simulation *simulation)
     scree_counters *counters = &simulation->counters;
     counters->num_contacts = num;
     counters->num_without_normal += counts->num_without_normal;
+    counters->num_inside += counts->num_inside;
     counters->num_fallbacks += counts->num_fallbacks;
     counters->worst_residual = fmax(counters->worst_residual, (double)counts->worst_residual);
     counters->largest_indentation = fmax(counters->largest_indentation, (double)counts->largest_indentation);

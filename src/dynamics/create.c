@@ -2,6 +2,7 @@
 /// A scene to a simulation at time 0. The scene's own faults (ranges, names) have been refused by its reader; what only
 /// shows with meshes and particles in place is refused here.
 #include "dynamics/populate.h"
+#include "dynamics/start_check.h"
 #include "dynamics/step_buffers.h"
 #include "dynamics/time_step.h"
 #include "polyhedra/generate.h"
@@ -217,36 +218,6 @@ static scree_real choose_skin(const scree_simulation *s)
     return (scree_real)(p->num_particles > 0 ? s->scene->solver.skin * sum / (double)p->num_particles : 0);
 }
 
-/// Bodies that start deeper inside each other than any contact law is meant for.
-#define SCREE_MAX_INITIAL_INDENTATION 0.05
-
-static scree_status check_initial_contacts(const scree_simulation *s, scree_report *report)
-{
-    const scree_contact_list *contacts = &s->contacts;
-    const int32_t num_particles = (int32_t)s->particles.num_particles;
-    int64_t num_deep = 0;
-    for (int64_t c = 0; c < contacts->num_contacts; ++c)
-    {
-        const scree_candidate_pair pair = contacts->bodies[c];
-        const double size = s->particle_shapes[s->particles.shape[pair.i]].properties.bounding_radius *
-                            (double)s->particles.scale[pair.i];
-        if ((double)contacts->indentation[c] <= SCREE_MAX_INITIAL_INDENTATION * size) continue;
-        if (++num_deep > 5) continue;
-        const scree_vec3 x = s->particles.position[pair.i];
-        char other[300];
-        if (pair.j < num_particles) snprintf(other, sizeof other, "particle %d", pair.j);
-        else snprintf(other, sizeof other, "wall \"%.200s\"", s->scene->walls[pair.j - num_particles].name);
-        scree_report_add(
-            report,
-            "particle %d of \"%s\" at (%g, %g, %g) starts %g m inside %s, more than %g of its bounding radius; "
-            "move one of them or the region of the particles",
-            pair.i, s->scene->particles[s->particles.group[pair.i]].name, (double)x.x, (double)x.y, (double)x.z,
-            (double)contacts->indentation[c], other, SCREE_MAX_INITIAL_INDENTATION);
-    }
-    if (num_deep > 5) scree_report_add(report, "%lld more particles start inside others", (long long)(num_deep - 5));
-    return num_deep > 0 ? SCREE_INVALID_INPUT : SCREE_OK;
-}
-
 /// True if every contact acts in a point: all particles are spheres, and no law has a moment of its own for them.
 static bool are_contacts_points(const scree_simulation *s)
 {
@@ -271,7 +242,7 @@ static scree_status start(scree_simulation *s, scree_report *report)
     scree_place_particles(s);
     scree_status status = scree_update_neighbours(s);
     if (status == SCREE_OK) status = scree_update_contacts(s);
-    if (status == SCREE_OK) status = check_initial_contacts(s, report);
+    if (status == SCREE_OK) status = scree_check_start(s, report);
     if (status == SCREE_OK) status = scree_update_forces(s);
     if (status == SCREE_OK) status = scree_update_wall_loads(s);
     return status;

@@ -2,9 +2,9 @@
 
 #include <math.h>
 
-/// Deepest contact of a sphere with a plane to expect, over its radius. At this depth half of the critical step is
-/// about a quarter of the Rayleigh time.
-#define SPHERE_INDENTATION 0.02
+/// Depth of a sphere's contact with a plane to expect, over its radius. Half of the critical step is then about 0.3 of
+/// the Rayleigh time, and still below the critical step at sixteen times this depth.
+#define SPHERE_INDENTATION 0.01
 
 double scree_time_step_critical(const scree_simulation *simulation)
 {

@@ -30,6 +30,8 @@ static const scree_field series_fields[] = {
     SERIES("rebuilds", "1", "neighbour searches so far", SCREE_FIELD_INT64, counters.num_rebuilds),
     SERIES("without_normal", "1", "overlaps without a normal, hence without a force, so far", SCREE_FIELD_INT64,
            counters.num_without_normal),
+    SERIES("inside", "1", "centres of spheres met inside the solid of a mesh so far, step by step", SCREE_FIELD_INT64,
+           counters.num_inside),
     SERIES("fallbacks", "1", "overlaps repeated with the hierarchy so far", SCREE_FIELD_INT64, counters.num_fallbacks),
     SERIES("worst_residual", "1", "worst certificate of an overlap so far", SCREE_FIELD_DOUBLE,
            counters.worst_residual),

@@ -55,7 +55,7 @@ def choose_moments(times, gone, first):
 
 def save_flow(run, path):
     pile.load(run, 0)
-    particles, walls = run.surfaces("frames"), run.surfaces("walls")
+    particles, walls = run.particles(), run.surfaces("walls")
     first = min(first_motion(walls), len(particles.times) - 1) if walls and len(walls.times) else 0
     chosen = choose_moments(particles.times, distances_gone(particles), first)
     frames = [pile.load(run, int(k)) for k in chosen]

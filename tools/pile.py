@@ -233,7 +233,7 @@ def add_scale_bar(axes, view, size=SIZE):
 
 def load(run, k):
     """Particles and walls (or None) of frame k; clear words if there are none."""
-    particles, walls = run.surfaces("frames"), run.surfaces("walls")
+    particles, walls = run.particles(), run.surfaces("walls")
     if particles is None or len(particles.times) == 0:
         raise SystemExit(f"{run.folder} has no frames: set output.frames in the scene")
     k = range(len(particles.times))[k]

@@ -40,9 +40,14 @@ class Run:
         return path
 
     def surfaces(self, kind="frames"):
-        """frames, walls or contacts; None if the run has none."""
+        """frames, spheres, walls or contacts; None if the run has none."""
         path = self.folder / f"{kind}.vtkhdf"
         return Surfaces(path) if path.exists() else None
+
+    def particles(self):
+        """Polyhedra and spheres together as triangles; None if the run has no frames."""
+        files = [surfaces for surfaces in (self.surfaces("frames"), self.surfaces("spheres")) if surfaces is not None]
+        return Particles(files) if files else None
 
 
 class Surfaces:
@@ -54,8 +59,9 @@ class Surfaces:
         self.steps = self.root["Steps"]
         num_steps = int(self.steps.attrs["NSteps"])
         self.times = self.steps["Values"][:num_steps]
-        self.is_lines = self.root["Lines/NumberOfCells"][1] > 0
-        self.topology = self.root["Lines" if self.is_lines else "Polygons"]
+        kinds = ("Vertices", "Lines", "Polygons")
+        self.column = next((k for k in (0, 1) if self.root[f"{kinds[k]}/NumberOfCells"][1] > 0), 2)
+        self.topology = self.root[kinds[self.column]]
 
     def frame_at(self, time):
         """Index of the frame next to a time."""
@@ -63,7 +69,7 @@ class Surfaces:
 
     def read(self, k):
         """Points, cells (lists of ids: offsets and connectivity) and arrays of frame k."""
-        column = 1 if self.is_lines else 2
+        column = self.column
         part = int(self.steps["PartOffsets"][k])
         num = {name: int(self.topology[name][part]) for name in ("NumberOfCells", "NumberOfConnectivityIds")}
         num_points = int(self.root["NumberOfPoints"][part])
@@ -89,3 +95,48 @@ class Surfaces:
             if len(points):
                 lower, upper = np.minimum(lower, points.min(axis=0)), np.maximum(upper, points.max(axis=0))
         return lower, upper
+
+
+def ball(rounds):
+    """Points and triangles of an icosahedron on the unit sphere, each triangle cut in four `rounds` times."""
+    golden = (1 + 5**0.5) / 2
+    points = [p for a in (-1, 1) for b in (-golden, golden) for p in ((0, a, b), (a, b, 0), (b, 0, a))]
+    points = np.array(points) / np.hypot(1, golden)
+    apart = np.linalg.norm(points[:, None] - points[None], axis=2)
+    near = (apart > 0) & (apart < 1.1)
+    triangles = [(i, j, k) for i in range(12) for j in range(i) for k in range(j) if near[i, j] and near[j, k] and near[i, k]]
+    triangles = [t if np.linalg.det(points[list(t)]) > 0 else t[::-1] for t in triangles]
+    for _ in range(rounds):
+        corners = points[np.array(triangles)]
+        middles = [corners[:, a] + corners[:, b] for a, b in ((0, 1), (1, 2), (2, 0))]
+        middles = [middle / np.linalg.norm(middle, axis=1, keepdims=True) for middle in middles]
+        a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
+        d, e, f = middles
+        points = np.concatenate([np.stack(t, axis=1) for t in ((a, d, f), (d, b, e), (f, e, c), (d, e, f))]).reshape(-1, 3)
+        triangles = np.arange(len(points)).reshape(-1, 3)
+    return points, np.array(triangles)
+
+
+class Particles:
+    """Frames of polyhedra and spheres as one; a sphere becomes triangles, the fewer the more spheres there are."""
+
+    def __init__(self, files):
+        self.files = files
+        self.times = min((each.times for each in files), key=len)
+
+    def read(self, k):
+        frames = [self.as_triangles(each.read(k)) if each.column == 0 else each.read(k) for each in self.files]
+        shift = np.cumsum([0] + [len(frame["points"]) for frame in frames])
+        merged = {name: np.concatenate([frame[name] for frame in frames]) for name in ("points", "particle", "group", "speed")}
+        merged["connectivity"] = np.concatenate([frame["connectivity"] + shift[n] for n, frame in enumerate(frames)])
+        return merged
+
+    @staticmethod
+    def as_triangles(spheres):
+        num = len(spheres["points"])
+        points, triangles = ball(3 if num < 200 else 2 if num < 5000 else 1 if num < 100000 else 0)
+        frame = {name: np.repeat(spheres[name], len(points)) for name in ("particle", "group", "speed")}
+        placed = spheres["points"][:, None] + spheres["radius"][:, None, None] * points.astype(np.float32)
+        frame["points"] = placed.reshape(-1, 3)
+        frame["connectivity"] = (len(points) * np.arange(num)[:, None, None] + triangles).ravel()
+        return frame

@@ -25,7 +25,9 @@ extern "C"
     X(SCREE_READ_FAILED, 6, "a file could not be read")                                        \
     X(SCREE_TOO_MANY, 7, "a count exceeds what the indices can hold")                          \
     X(SCREE_INTERRUPTED, 8, "stopped on request")                                              \
-    X(SCREE_UNSTABLE, -1, "the simulation has left the range of numbers")
+    X(SCREE_NO_DEVICE, 9, "there is no GPU that scree can run on")                             \
+    X(SCREE_UNSTABLE, -1, "the simulation has left the range of numbers")                      \
+    X(SCREE_DEVICE_FAILED, -2, "the GPU has failed")
 
     typedef enum scree_status
     {

@@ -17,6 +17,7 @@ enum
 struct scree_broad_phase_buffers
 {
     scree_sort_buffers sort; ///< keys of pairs
+    int64_t *num_keys;       ///< counts the pairs of a search
     int32_t *first_as_i;     ///< (max_bodies + 1)
     int32_t *first_as_j;     ///< (max_bodies + 1)
     int64_t max_pairs;
@@ -26,42 +27,57 @@ struct scree_broad_phase_buffers
 
 void scree_broad_phase_destroy(scree_broad_phase *broad_phase)
 {
+    scree_device *device = broad_phase->device;
     scree_lbvh_destroy(&broad_phase->tree);
     if (broad_phase->buffers != NULL)
     {
         scree_sort_destroy(&broad_phase->buffers->sort);
-        free(broad_phase->buffers->first_as_i);
-        free(broad_phase->buffers->first_as_j);
+        scree_device_free(device, broad_phase->buffers->num_keys);
+        scree_device_free(device, broad_phase->buffers->first_as_i);
+        scree_device_free(device, broad_phase->buffers->first_as_j);
         free(broad_phase->buffers);
     }
-    free(broad_phase->pairs);
-    free(broad_phase->row_begin);
-    free(broad_phase->row_pairs);
-    *broad_phase = (scree_broad_phase){0};
+    scree_device_free(device, broad_phase->pairs);
+    scree_device_free(device, broad_phase->row_begin);
+    scree_device_free(device, broad_phase->row_pairs);
+    *broad_phase = (scree_broad_phase){.device = device};
+}
+
+/// What belongs to the first search.
+static scree_status start(scree_broad_phase *broad_phase)
+{
+    if (broad_phase->buffers == NULL) broad_phase->buffers = calloc(1, sizeof *broad_phase->buffers);
+    struct scree_broad_phase_buffers *b = broad_phase->buffers;
+    if (b == NULL) return SCREE_OUT_OF_MEMORY;
+    broad_phase->tree.device = b->sort.device = broad_phase->device;
+    if (b->num_keys == NULL) b->num_keys = scree_device_alloc(broad_phase->device, 1, sizeof *b->num_keys);
+    return b->num_keys != NULL ? SCREE_OK : SCREE_OUT_OF_MEMORY;
 }
 
 /// Room for arrays of one entry per body.
 static scree_status reserve_bodies(scree_broad_phase *broad_phase, int64_t num_bodies)
 {
     struct scree_broad_phase_buffers *b = broad_phase->buffers;
+    scree_device *device = broad_phase->device;
     if (num_bodies <= b->max_bodies && broad_phase->row_begin != NULL) return SCREE_OK;
     const int64_t max_bodies = scree_buffer_grown(num_bodies);
-    int32_t *first_as_i = scree_buffer_alloc(max_bodies + 1, sizeof *first_as_i);
-    int32_t *first_as_j = scree_buffer_alloc(max_bodies + 1, sizeof *first_as_j);
-    int64_t *row_begin = scree_buffer_alloc(max_bodies + 1, sizeof *row_begin);
+    int32_t *first_as_i = scree_device_alloc(device, max_bodies + 1, sizeof *first_as_i);
+    int32_t *first_as_j = scree_device_alloc(device, max_bodies + 1, sizeof *first_as_j);
+    int64_t *row_begin = scree_device_alloc(device, max_bodies + 1, sizeof *row_begin);
     if (first_as_i == NULL || first_as_j == NULL || row_begin == NULL)
     {
-        free(first_as_i);
-        free(first_as_j);
-        free(row_begin);
+        scree_device_free(device, first_as_i);
+        scree_device_free(device, first_as_j);
+        scree_device_free(device, row_begin);
         return SCREE_OUT_OF_MEMORY;
     }
     // the rows of the last search stay readable until this one is complete
-    for (int64_t body = 0; body <= b->num_bodies; ++body)
-        row_begin[body] = broad_phase->row_begin != NULL ? broad_phase->row_begin[body] : 0;
-    free(b->first_as_i);
-    free(b->first_as_j);
-    free(broad_phase->row_begin);
+    const size_t num_bytes = (size_t)(b->num_bodies + 1) * sizeof *row_begin;
+    if (broad_phase->row_begin != NULL) scree_device_copy(device, row_begin, broad_phase->row_begin, num_bytes);
+    else scree_device_zero(device, row_begin, num_bytes);
+    scree_device_free(device, b->first_as_i);
+    scree_device_free(device, b->first_as_j);
+    scree_device_free(device, broad_phase->row_begin);
     b->first_as_i = first_as_i;
     b->first_as_j = first_as_j;
     broad_phase->row_begin = row_begin;
@@ -73,18 +89,19 @@ static scree_status reserve_bodies(scree_broad_phase *broad_phase, int64_t num_b
 static scree_status reserve_pairs(scree_broad_phase *broad_phase, int64_t num_pairs)
 {
     struct scree_broad_phase_buffers *b = broad_phase->buffers;
+    scree_device *device = broad_phase->device;
     if (num_pairs <= b->max_pairs) return SCREE_OK;
     const int64_t max_pairs = scree_buffer_grown(num_pairs);
-    scree_candidate_pair *pairs = scree_buffer_alloc(max_pairs, sizeof *pairs);
-    int32_t *row_pairs = scree_buffer_alloc(2 * max_pairs, sizeof *row_pairs);
+    scree_candidate_pair *pairs = scree_device_alloc(device, max_pairs, sizeof *pairs);
+    int32_t *row_pairs = scree_device_alloc(device, 2 * max_pairs, sizeof *row_pairs);
     if (pairs == NULL || row_pairs == NULL)
     {
-        free(pairs);
-        free(row_pairs);
+        scree_device_free(device, pairs);
+        scree_device_free(device, row_pairs);
         return SCREE_OUT_OF_MEMORY;
     }
-    free(broad_phase->pairs);
-    free(broad_phase->row_pairs);
+    scree_device_free(device, broad_phase->pairs);
+    scree_device_free(device, broad_phase->row_pairs);
     broad_phase->pairs = pairs;
     broad_phase->row_pairs = row_pairs;
     b->max_pairs = max_pairs;
@@ -102,15 +119,20 @@ static int32_t count_bits(int64_t number)
 static int64_t find_keys(scree_broad_phase *broad_phase, const scree_broad_phase_input *input)
 {
     struct scree_broad_phase_buffers *b = broad_phase->buffers;
-    int64_t num_keys = 0;
-    const scree_pair_list list = {b->sort.keys, &num_keys, b->sort.max_items,
+    scree_device *device = broad_phase->device;
+    scree_device_zero(device, b->num_keys, sizeof *b->num_keys);
+    const scree_pair_list list = {b->sort.keys, b->num_keys, b->sort.max_items,
                                   count_bits(input->num_particles + input->num_walls)};
-    scree_particle_pairs_find((scree_particle_pairs_args){
-        broad_phase->tree.view, list, input->compares_spheres ? input->centres : NULL, input->radii});
+    const scree_particle_pairs_args particle_args = {broad_phase->tree.view, list,
+                                                     input->compares_spheres ? input->centres : NULL, input->radii};
+    if (device == NULL) scree_particle_pairs_find(particle_args);
+    else scree_particle_pairs_launch_on(device, particle_args, 2 * input->num_particles - 1);
     const scree_wall_pairs_args wall_args = {input->centres,   input->radii,    input->walls, input->num_particles,
                                              input->num_walls, BLOCK_PARTICLES, list};
     if (input->num_walls > 0)
-        scree_wall_pairs_launch(wall_args, (input->num_particles + BLOCK_PARTICLES - 1) / BLOCK_PARTICLES);
+        scree_wall_pairs_launch_on(device, wall_args, (input->num_particles + BLOCK_PARTICLES - 1) / BLOCK_PARTICLES);
+    int64_t num_keys = 0;
+    scree_device_read(device, &num_keys, b->num_keys, sizeof num_keys);
     return num_keys;
 }
 
@@ -121,9 +143,13 @@ static void fill_pairs_and_rows(scree_broad_phase *broad_phase, int64_t num_pair
     scree_pair_rows_args args = {b->sort.keys,  b->sort.spare_keys,     broad_phase->pairs,     b->first_as_i,
                                  b->first_as_j, broad_phase->row_begin, broad_phase->row_pairs, num_pairs,
                                  num_bodies,    count_bits(num_bodies)};
+    scree_device *device = broad_phase->device;
     if (num_pairs == 0)
-        for (int64_t body = 0; body <= num_bodies; ++body) args.first_as_i[body] = args.first_as_j[body] = 0;
-    scree_pair_unpack_launch(args, num_pairs);
+    {
+        scree_device_zero(device, args.first_as_i, (size_t)(num_bodies + 1) * sizeof *args.first_as_i);
+        scree_device_zero(device, args.first_as_j, (size_t)(num_bodies + 1) * sizeof *args.first_as_j);
+    }
+    scree_pair_unpack_launch_on(device, args, num_pairs);
 
     // by second body; the pairs of one stay in order
     uint64_t *keys = b->sort.keys;
@@ -131,9 +157,9 @@ static void fill_pairs_and_rows(scree_broad_phase *broad_phase, int64_t num_pair
     b->sort.spare_keys = keys;
     scree_sort(&b->sort, num_pairs, 32);
     args.second_keys = b->sort.keys;
-    scree_pair_second_begin_launch(args, num_pairs);
-    scree_pair_row_begin_launch(args, num_bodies + 1);
-    scree_pair_rows_launch(args, num_pairs);
+    scree_pair_second_begin_launch_on(device, args, num_pairs);
+    scree_pair_row_begin_launch_on(device, args, num_bodies + 1);
+    scree_pair_rows_launch_on(device, args, num_pairs);
     broad_phase->num_pairs = num_pairs;
     b->num_bodies = num_bodies;
 }
@@ -142,11 +168,11 @@ scree_status scree_broad_phase_find(scree_broad_phase *broad_phase, const scree_
 {
     const int64_t num_bodies = input->num_particles + input->num_walls;
     if (num_bodies >= INT32_MAX) return SCREE_TOO_MANY;
-    if (broad_phase->buffers == NULL) broad_phase->buffers = calloc(1, sizeof *broad_phase->buffers);
-    if (broad_phase->buffers == NULL) return SCREE_OUT_OF_MEMORY;
-    struct scree_broad_phase_buffers *b = broad_phase->buffers;
-    scree_status status = reserve_bodies(broad_phase, num_bodies);
+    scree_status status = start(broad_phase);
+    if (status == SCREE_OK) status = reserve_bodies(broad_phase, num_bodies);
     if (status == SCREE_OK) status = scree_lbvh_build(&broad_phase->tree, input->boxes, input->num_particles);
+
+    struct scree_broad_phase_buffers *b = broad_phase->buffers;
 
     // a list that was too short has still counted all pairs, so the second try has room
     int64_t num_pairs = 0;

@@ -19,7 +19,7 @@ typedef struct scree_broad_phase_wall
     bool is_present; ///< a removed wall makes no pairs
 } scree_broad_phase_wall;
 
-/// Input of one search. Boxes and spheres already contain the skin.
+/// Input of one search, all of it where the broad phase is. Boxes and spheres already contain the skin.
 typedef struct scree_broad_phase_input
 {
     const scree_box *boxes;              ///< (num_particles) world boxes with skin
@@ -31,9 +31,10 @@ typedef struct scree_broad_phase_input
     bool compares_spheres; ///< particles make a pair only if their bounding spheres overlap too
 } scree_broad_phase_input;
 
-/// Owns the particle tree, the pairs and all scratch. Start from {0}.
+/// Owns the particle tree, the pairs and all scratch. Start from {0}, or from {.device = ...} for a search on a GPU.
 typedef struct scree_broad_phase
 {
+    scree_device *device; ///< where all arrays lie, NULL: the CPU
     scree_lbvh tree;
     scree_candidate_pair *pairs; ///< (num_pairs) sorted by (i, j), each once
     int64_t num_pairs;
@@ -44,9 +45,10 @@ typedef struct scree_broad_phase
 
 /// Finds all pairs of particles whose boxes overlap (and bounding spheres, if asked for), and all pairs (particle,
 /// wall) where a particle's sphere meets the box of one of the wall's triangles. Parallel, same pairs for any number of
-/// threads.
+/// threads and on a GPU. What a GPU has found is complete when scree_device_status() says so.
 scree_status scree_broad_phase_find(scree_broad_phase *broad_phase, const scree_broad_phase_input *input);
-/// Pairs sorted and unique, i < j, rows complete; compared with all pairs by brute force if num_particles <= 2000.
+/// On the CPU: pairs sorted and unique, i < j, rows complete; compared with all pairs by brute force if num_particles
+/// <= 2000.
 bool scree_broad_phase_validate(const scree_broad_phase *broad_phase, const scree_broad_phase_input *input,
                                 scree_report *report);
 void scree_broad_phase_destroy(scree_broad_phase *broad_phase);

@@ -24,12 +24,13 @@ struct scree_lbvh_buffers
 
 static void destroy_buffers(struct scree_lbvh_buffers *b)
 {
-    free(b->arrays.first_leaf);
-    free(b->arrays.last_leaf);
-    free(b->arrays.num_left_turns);
-    free(b->arrays.nodes);
-    free(b->arrays.arrivals);
-    free(b->arrays.chunk_bounds);
+    scree_device *device = b->sort.device;
+    scree_device_free(device, b->arrays.first_leaf);
+    scree_device_free(device, b->arrays.last_leaf);
+    scree_device_free(device, b->arrays.num_left_turns);
+    scree_device_free(device, b->arrays.nodes);
+    scree_device_free(device, b->arrays.arrivals);
+    scree_device_free(device, b->arrays.chunk_bounds);
     scree_sort_destroy(&b->sort);
 }
 
@@ -37,27 +38,29 @@ void scree_lbvh_destroy(scree_lbvh *tree)
 {
     if (tree->buffers != NULL) destroy_buffers(tree->buffers);
     free(tree->buffers);
-    *tree = (scree_lbvh){.view = {NULL, 0, SCREE_LBVH_END}};
+    *tree = (scree_lbvh){.device = tree->device, .view = {NULL, 0, SCREE_LBVH_END}};
 }
 
 /// Room for num_leaves; refused with the tree as it was.
 static scree_status reserve(scree_lbvh *tree, int64_t num_leaves)
 {
     if (num_leaves > MAX_LEAVES) return SCREE_TOO_MANY;
+    scree_device *device = tree->device;
     if (tree->buffers == NULL) tree->buffers = calloc(1, sizeof *tree->buffers);
     if (tree->buffers == NULL) return SCREE_OUT_OF_MEMORY;
     struct scree_lbvh_buffers *b = tree->buffers;
+    b->sort.device = device;
     if (num_leaves <= b->max_leaves) return SCREE_OK;
 
     // a first build takes what it needs: trees of shapes and walls do not grow
     const int64_t max_leaves = b->max_leaves == 0 ? num_leaves : scree_buffer_grown(num_leaves);
-    struct scree_lbvh_buffers grown = {.max_leaves = max_leaves};
-    grown.arrays.first_leaf = scree_buffer_alloc(max_leaves, sizeof *grown.arrays.first_leaf);
-    grown.arrays.last_leaf = scree_buffer_alloc(max_leaves, sizeof *grown.arrays.last_leaf);
-    grown.arrays.num_left_turns = scree_buffer_alloc(max_leaves, sizeof *grown.arrays.num_left_turns);
-    grown.arrays.nodes = scree_buffer_alloc(2 * max_leaves, sizeof *grown.arrays.nodes);
-    grown.arrays.arrivals = scree_buffer_alloc(max_leaves, sizeof *grown.arrays.arrivals);
-    grown.arrays.chunk_bounds = scree_buffer_alloc(SCREE_LBVH_BOUNDS_CHUNKS, sizeof *grown.arrays.chunk_bounds);
+    struct scree_lbvh_buffers grown = {.max_leaves = max_leaves, .sort = {.device = device}};
+    grown.arrays.first_leaf = scree_device_alloc(device, max_leaves, sizeof *grown.arrays.first_leaf);
+    grown.arrays.last_leaf = scree_device_alloc(device, max_leaves, sizeof *grown.arrays.last_leaf);
+    grown.arrays.num_left_turns = scree_device_alloc(device, max_leaves, sizeof *grown.arrays.num_left_turns);
+    grown.arrays.nodes = scree_device_alloc(device, 2 * max_leaves, sizeof *grown.arrays.nodes);
+    grown.arrays.arrivals = scree_device_alloc(device, max_leaves, sizeof *grown.arrays.arrivals);
+    grown.arrays.chunk_bounds = scree_device_alloc(device, SCREE_LBVH_BOUNDS_CHUNKS, sizeof *grown.arrays.chunk_bounds);
     const bool has_all = grown.arrays.first_leaf != NULL && grown.arrays.last_leaf != NULL &&
                          grown.arrays.num_left_turns != NULL && grown.arrays.nodes != NULL &&
                          grown.arrays.arrivals != NULL && grown.arrays.chunk_bounds != NULL;
@@ -67,7 +70,7 @@ static scree_status reserve(scree_lbvh *tree, int64_t num_leaves)
         return SCREE_OUT_OF_MEMORY;
     }
     // the kernels leave the arrivals at 0, so this is done once
-    for (int64_t r = 0; r < max_leaves; ++r) grown.arrays.arrivals[r] = 0;
+    scree_device_zero(device, grown.arrays.arrivals, (size_t)max_leaves * sizeof *grown.arrays.arrivals);
     destroy_buffers(b);
     *b = grown;
     return SCREE_OK;
@@ -75,11 +78,14 @@ static scree_status reserve(scree_lbvh *tree, int64_t num_leaves)
 
 static int64_t count_blocks(int64_t num_leaves) { return (num_leaves + BLOCK_LEAVES - 1) / BLOCK_LEAVES; }
 
-static scree_morton_frame bound_middles(scree_lbvh_build_args args)
+static scree_morton_frame bound_middles(scree_device *device, scree_lbvh_build_args args)
 {
-    scree_lbvh_bounds_launch(args, SCREE_LBVH_BOUNDS_CHUNKS);
+    scree_lbvh_bounds_launch_on(device, args, SCREE_LBVH_BOUNDS_CHUNKS);
+    scree_box chunk_bounds[SCREE_LBVH_BOUNDS_CHUNKS];
+    for (int c = 0; c < SCREE_LBVH_BOUNDS_CHUNKS; ++c) chunk_bounds[c] = scree_box_empty();
+    scree_device_read(device, chunk_bounds, args.chunk_bounds, sizeof chunk_bounds);
     scree_box bounds = scree_box_empty();
-    for (int c = 0; c < SCREE_LBVH_BOUNDS_CHUNKS; ++c) bounds = scree_box_union(bounds, args.chunk_bounds[c]);
+    for (int c = 0; c < SCREE_LBVH_BOUNDS_CHUNKS; ++c) bounds = scree_box_union(bounds, chunk_bounds[c]);
     return scree_morton_frame_make(bounds);
 }
 
@@ -97,16 +103,16 @@ scree_status scree_lbvh_build(scree_lbvh *tree, const scree_box *boxes, int64_t 
     args.boxes = boxes;
     args.num_leaves = num_boxes;
     args.block_leaves = BLOCK_LEAVES;
-    args.frame = bound_middles(args);
+    args.frame = bound_middles(tree->device, args);
     args.codes = b->sort.keys;
     args.items = b->sort.values;
-    scree_lbvh_codes_launch(args, num_boxes);
+    scree_lbvh_codes_launch_on(tree->device, args, num_boxes);
     scree_sort(&b->sort, num_boxes, 0);
     args.codes = b->sort.keys;
     args.items = b->sort.values;
-    scree_lbvh_hierarchy_launch(args, num_boxes - 1);
-    scree_lbvh_left_turns_launch(args, count_blocks(num_boxes));
-    scree_lbvh_nodes_launch(args, count_blocks(num_boxes));
+    scree_lbvh_hierarchy_launch_on(tree->device, args, num_boxes - 1);
+    scree_lbvh_left_turns_launch_on(tree->device, args, count_blocks(num_boxes));
+    scree_lbvh_nodes_launch_on(tree->device, args, count_blocks(num_boxes));
     return SCREE_OK;
 }
 
@@ -118,7 +124,7 @@ void scree_lbvh_refit(scree_lbvh *tree, const scree_box *boxes)
     args.num_leaves = tree->view.num_leaves;
     args.block_leaves = BLOCK_LEAVES;
     args.items = tree->buffers->sort.values;
-    scree_lbvh_nodes_launch(args, count_blocks(args.num_leaves));
+    scree_lbvh_nodes_launch_on(tree->device, args, count_blocks(args.num_leaves));
 }
 
 /// Smallest number that is wrong about node k, as text; NULL if all is well.

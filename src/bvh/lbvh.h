@@ -4,21 +4,22 @@
 #define SCREE_LBVH_H
 
 #include "bvh/lbvh_kernel.h"
-#include "scree/base.h"
+#include "core/device.h"
 
-/// Owns its buffers and keeps them between builds. Start from {0}.
+/// Owns its buffers and keeps them between builds. Start from {0}, or from {.device = ...} for a tree on a GPU.
 typedef struct scree_lbvh
 {
+    scree_device *device; ///< where the boxes and the tree lie, NULL: the CPU
     scree_lbvh_view view;
     struct scree_lbvh_buffers *buffers; ///< internal
 } scree_lbvh;
 
-/// Builds the tree over `boxes` (num_boxes); host memory; parallel; same tree for any number of threads.
+/// Builds the tree over `boxes` (num_boxes); parallel; same tree for any number of threads and on a GPU.
 /// Leaves carry the index of their box. Equal Morton codes are split by index. SCREE_OUT_OF_MEMORY, SCREE_TOO_MANY.
 scree_status scree_lbvh_build(scree_lbvh *tree, const scree_box *boxes, int64_t num_boxes);
 /// New boxes, same hierarchy.
 void scree_lbvh_refit(scree_lbvh *tree, const scree_box *boxes);
-/// Every item once, parents contain children, escape links lead through all nodes. Faults go to the report.
+/// On the CPU: every item once, parents contain children, escape links lead through all nodes. Faults go to the report.
 bool scree_lbvh_validate(const scree_lbvh *tree, const scree_box *boxes, int64_t num_boxes, scree_report *report);
 void scree_lbvh_destroy(scree_lbvh *tree);
 

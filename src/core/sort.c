@@ -1,6 +1,6 @@
 #include "core/sort.h"
 
-#include "core/buffer.h"
+#include "core/device_cuda.h"
 
 #include <stdlib.h>
 #ifdef _OPENMP
@@ -24,24 +24,35 @@ enum
     MAX_INSERTION_ITEMS = 48
 };
 
+/// Bytes of the histograms, or of what the GPU wants instead.
+static int64_t count_bytes(scree_device *device, int64_t max_items, bool has_values)
+{
+    int64_t num_bytes = 0;
+    (void)has_values;
+    if (device != NULL) SCREE_CUDA_CALL(num_bytes = scree_cuda_sort_scratch(device, max_items, has_values));
+    if (device != NULL) return num_bytes;
+    const int64_t max_chunks = max_items / MIN_CHUNK_ITEMS + 1;
+    return (max_chunks < MAX_CHUNKS ? max_chunks : MAX_CHUNKS) * NUM_DIGITS * (int64_t)sizeof(uint32_t);
+}
+
 scree_status scree_sort_reserve(scree_sort_buffers *buffers, int64_t num_items, bool has_values)
 {
     if (num_items > (int64_t)UINT32_MAX) return SCREE_TOO_MANY;
     if (buffers->counts != NULL && num_items <= buffers->max_items && (buffers->has_values || !has_values))
         return SCREE_OK;
-    scree_sort_buffers grown = {0};
+    scree_device *device = buffers->device;
+    scree_sort_buffers grown = {.device = device};
     grown.has_values = buffers->has_values || has_values;
     grown.max_items = num_items <= buffers->max_items ? buffers->max_items : num_items;
-    grown.keys = scree_buffer_alloc(grown.max_items, sizeof *grown.keys);
-    grown.spare_keys = scree_buffer_alloc(grown.max_items, sizeof *grown.keys);
-    const int64_t max_chunks = grown.max_items / MIN_CHUNK_ITEMS + 1;
-    grown.counts =
-        scree_buffer_alloc((max_chunks < MAX_CHUNKS ? max_chunks : MAX_CHUNKS) * NUM_DIGITS, sizeof *grown.counts);
+    grown.keys = scree_device_alloc(device, grown.max_items, sizeof *grown.keys);
+    grown.spare_keys = scree_device_alloc(device, grown.max_items, sizeof *grown.keys);
+    grown.num_count_bytes = count_bytes(device, grown.max_items, grown.has_values);
+    grown.counts = scree_device_alloc(device, grown.num_count_bytes, 1);
     bool is_complete = grown.keys != NULL && grown.spare_keys != NULL && grown.counts != NULL;
     if (grown.has_values)
     {
-        grown.values = scree_buffer_alloc(grown.max_items, sizeof *grown.values);
-        grown.spare_values = scree_buffer_alloc(grown.max_items, sizeof *grown.values);
+        grown.values = scree_device_alloc(device, grown.max_items, sizeof *grown.values);
+        grown.spare_values = scree_device_alloc(device, grown.max_items, sizeof *grown.values);
         is_complete = is_complete && grown.values != NULL && grown.spare_values != NULL;
     }
     scree_sort_destroy(is_complete ? buffers : &grown);
@@ -52,12 +63,13 @@ scree_status scree_sort_reserve(scree_sort_buffers *buffers, int64_t num_items, 
 
 void scree_sort_destroy(scree_sort_buffers *buffers)
 {
-    free(buffers->keys);
-    free(buffers->values);
-    free(buffers->spare_keys);
-    free(buffers->spare_values);
-    free(buffers->counts);
-    *buffers = (scree_sort_buffers){0};
+    scree_device *device = buffers->device;
+    scree_device_free(device, buffers->keys);
+    scree_device_free(device, buffers->values);
+    scree_device_free(device, buffers->spare_keys);
+    scree_device_free(device, buffers->spare_values);
+    scree_device_free(device, buffers->counts);
+    *buffers = (scree_sort_buffers){.device = device};
 }
 
 /// How the items are shared: chunk c holds first_of_chunk(c) up to first_of_chunk(c + 1).
@@ -156,21 +168,22 @@ static void scatter_items(const scree_sort_buffers *b, int64_t begin, int64_t en
 static void sort_digit(scree_sort_buffers *buffers, int64_t num_items, int shift)
 {
     const int num_chunks = count_chunks(num_items);
+    uint32_t *counts = buffers->counts;
 #pragma omp parallel for schedule(static, 1) num_threads(num_chunks)
     for (int c = 0; c < num_chunks; ++c)
     {
         const int64_t begin = first_of_chunk(num_items, num_chunks, c);
         const int64_t end = first_of_chunk(num_items, num_chunks, c + 1);
-        count_digits(buffers->keys + begin, end - begin, shift, buffers->counts + c * NUM_DIGITS);
+        count_digits(buffers->keys + begin, end - begin, shift, counts + c * NUM_DIGITS);
     }
-    counts_to_places(buffers->counts, num_chunks);
+    counts_to_places(counts, num_chunks);
 #pragma omp parallel for schedule(static, 1) num_threads(num_chunks)
     for (int c = 0; c < num_chunks; ++c)
     {
         const int64_t begin = first_of_chunk(num_items, num_chunks, c);
         const int64_t end = first_of_chunk(num_items, num_chunks, c + 1);
-        if (buffers->has_values) scatter_items(buffers, begin, end, shift, buffers->counts + c * NUM_DIGITS);
-        else scatter_keys(buffers, begin, end, shift, buffers->counts + c * NUM_DIGITS);
+        if (buffers->has_values) scatter_items(buffers, begin, end, shift, counts + c * NUM_DIGITS);
+        else scatter_keys(buffers, begin, end, shift, counts + c * NUM_DIGITS);
     }
 
     uint64_t *keys = buffers->keys;
@@ -184,6 +197,11 @@ static void sort_digit(scree_sort_buffers *buffers, int64_t num_items, int shift
 void scree_sort(scree_sort_buffers *buffers, int64_t num_items, int first_bit)
 {
     if (num_items < 2) return;
+    if (buffers->device != NULL)
+    {
+        SCREE_CUDA_CALL(scree_cuda_sort(buffers, num_items, first_bit));
+        return;
+    }
     if (num_items <= MAX_INSERTION_ITEMS)
     {
         insertion_sort(buffers, num_items, first_bit);

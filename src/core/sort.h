@@ -1,20 +1,22 @@
 /// \file sort.h
 /// Stable parallel radix sort by a 64-bit key, least significant digit first (Zagha & Blelloch 1991). A stable sort
-/// has one answer only, so it is the same for any number of threads.
+/// has one answer only, so it is the same for any number of threads, and for CUB, which does it on a GPU.
 #ifndef SCREE_SORT_H
 #define SCREE_SORT_H
 
-#include "scree/base.h"
+#include "core/device.h"
 
 /// Two places for the items: a pass reads one and writes the other. Start from {0}, reserve, fill `keys` and, if they
 /// are wanted, `values`; after the sort the answer stands in `keys` and `values`, which may then be other addresses.
 typedef struct scree_sort_buffers
 {
-    uint64_t *keys;  ///< (max_items)
-    int32_t *values; ///< (max_items), NULL if reserved without values
+    scree_device *device; ///< where the arrays lie; set before the first call, NULL for the CPU
+    uint64_t *keys;       ///< (max_items)
+    int32_t *values;      ///< (max_items), NULL if reserved without values
     uint64_t *spare_keys;
     int32_t *spare_values;
-    uint32_t *counts; ///< histograms of the digits, one per chunk
+    void *counts; ///< histograms of the digits, one per chunk; on a GPU scratch memory of CUB
+    int64_t num_count_bytes;
     int64_t max_items;
     bool has_values;
 } scree_sort_buffers;

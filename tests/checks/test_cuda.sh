@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Every .cu file compiles without warnings for the three architectures, in both precisions; the PTX holds no multiply-add
 # but those written as fma(); every kernel header compiles alone as CUDA. Nothing is run: that needs a device. The tests of
-# the stand-in for a device, tests/cuda_on_cpu, compile too: what it offers is what CUDA has.
+# the stand-in for a device, tests/cuda_on_cpu, compile too: what it offers is what CUDA has. What the kernels take is that
+# of docs/cuda_resources.md, without stack and spills where nothing else is said; --write writes this page.
 . "$(dirname "$0")/common.sh"
 nvcc=$(command -v nvcc || ls /usr/local/cuda/bin/nvcc 2>/dev/null) || { echo "skipped: there is no nvcc"; exit 77; }
 flags="-std=c++17 --fmad=false --ftz=false --prec-div=true --prec-sqrt=true -Werror=all-warnings"
@@ -19,7 +20,7 @@ job() {
     double | float)
         local real=
         [ "$kind" = float ] && real=-DSCREE_SINGLE=1
-        "$nvcc" $flags $real -gencode arch=compute_80,code=sm_80 -gencode arch=compute_90,code=sm_90 \
+        "$nvcc" $flags $real -Xptxas=-v -gencode arch=compute_80,code=sm_80 -gencode arch=compute_90,code=sm_90 \
             -gencode arch=compute_120,code=sm_120 -c "$file" -o "$out.o"
         ;;
     ptx)
@@ -50,4 +51,6 @@ export -f job
     printf 'test %s\n' "${emulated[@]}"
 } | xargs -P 2 -L 1 bash -c 'job "$@"' job
 cat "$scratch"/*.fault >"$scratch/faults" 2>/dev/null
+PATH=$PATH:$(dirname "$nvcc")
+python3 -B tests/checks/cuda_resources.py "$@" "$scratch"/double_*.log >>"$scratch/faults" 2>&1
 finish "CUDA files and kernel headers" $((${#units[@]} + ${#headers[@]})) "$scratch/faults"

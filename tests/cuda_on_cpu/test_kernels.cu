@@ -44,6 +44,7 @@ SCREE_DECLARE_LAUNCH_CUDA(scree_gather)
 SCREE_DECLARE_LAUNCH_CUDA(scree_work)
 SCREE_DECLARE_LAUNCH_CUDA(scree_collision)
 SCREE_DECLARE_LAUNCH_CUDA(scree_wall_load)
+SCREE_DECLARE_LAUNCH_CUDA(scree_collision)
 SCREE_DECLARE_LAUNCH_CUDA(scree_predict)
 SCREE_DECLARE_LAUNCH_CUDA(scree_correct)
 SCREE_DECLARE_LAUNCH_CUDA(scree_boxes)
@@ -429,11 +430,7 @@ static void find_overlaps_on(side &where)
     args.slices = where.copy(slices.data(), num_pairs);
     args.results = where.make<scree_overlap_result>(num_pairs);
     args.options = s->narrow_phase.options;
-    if (where.is_device)
-    {
-        const scree_cuda_queue queue = {nullptr, where.block};
-        SCREE_CUDA(scree_overlap_pairs_launch_cuda(queue, args, num_pairs));
-    }
+    if (where.is_device) scree_overlap_pairs_launch_cuda(where.device, args, num_pairs);
     else
         for (int64_t p = 0; p < num_pairs; ++p) scree_overlap_pairs_at(args, p);
 
@@ -594,6 +591,33 @@ static void test_work()
             work.sums = where.make<scree_work_sums>(num_blocks);
             LAUNCH_ON(where, scree_work, work, num_blocks);
             where.keep(work.sums, num_blocks);
+        });
+}
+
+static void test_collisions()
+{
+    check_two_sides(
+        [](side &where)
+        {
+            const int64_t n = s->contacts.num_contacts, num_old = s->old_contacts.num_contacts;
+            std::vector<double> normal, tangential;
+            for (int64_t o = 0; o < num_old; ++o)
+            {
+                normal.push_back(1e-3 / (double)(o + 1));
+                tangential.push_back(1e-4 / (double)(o + 3));
+            }
+            scree_collision_args args = {};
+            args.contacts = contacts_on(where, s->contacts, s->broad_phase.num_pairs);
+            args.bodies = motion_on(where);
+            args.old_of_contact = where.copy(b->old_of_contact, n);
+            args.old_normal = where.copy(normal.data(), num_old);
+            args.old_tangential = where.copy(tangential.data(), num_old);
+            args.time_step = s->time_step;
+            args.normal = where.make<double>(n);
+            args.tangential = where.make<double>(n);
+            LAUNCH_ON(where, scree_collision, args, n);
+            where.keep(args.normal, n);
+            where.keep(args.tangential, n);
         });
 }
 

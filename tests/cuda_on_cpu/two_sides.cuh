@@ -4,6 +4,10 @@
 #ifndef CUDA_ON_CPU_TWO_SIDES_CUH
 #define CUDA_ON_CPU_TWO_SIDES_CUH
 
+extern "C"
+{
+#include "core/device_cuda.h"
+}
 #include "device_array.cuh"
 
 #include <cstring>
@@ -13,14 +17,20 @@
 struct side
 {
     const bool is_device;
-    const int32_t block; ///< threads of a block on the device
+    scree_device *device = nullptr; ///< for launches; the arrays are taken one by one, without an arena
     std::vector<unsigned char> outcome;
 
-    explicit side(bool is_device_, int32_t block_ = 0) : is_device(is_device_), block(block_) {}
+    explicit side(bool is_device_, int32_t block = 0) : is_device(is_device_)
+    {
+        const scree_device_def def = {0, block, 0};
+        if (is_device && scree_cuda_open(&device, &def, nullptr) != SCREE_OK) std::exit(EXIT_FAILURE);
+    }
     side(const side &) = delete;
     side &operator=(const side &) = delete;
     ~side()
     {
+        if (is_device) SCREE_CHECK_INT(scree_cuda_status(device, nullptr), SCREE_OK);
+        if (is_device) scree_cuda_close(device);
         for (void *array : arrays) is_device ? (void)cudaFree(array) : std::free(array);
     }
 
@@ -76,11 +86,10 @@ struct side
 };
 
 /// Launches a kernel where the arrays are.
-#define LAUNCH_ON(where, name, args, num)                                            \
-    do {                                                                             \
-        const scree_cuda_queue queue = {nullptr, (where).block};                     \
-        if ((where).is_device) SCREE_CUDA(name##_launch_cuda(queue, (args), (num))); \
-        else name##_launch((args), (num));                                           \
+#define LAUNCH_ON(where, name, args, num)                                         \
+    do {                                                                          \
+        if ((where).is_device) name##_launch_cuda((where).device, (args), (num)); \
+        else name##_launch((args), (num));                                        \
     } while (0)
 
 /// Runs `body(side &)` on the host and, with several block sizes, on the device: the same bytes, and some.

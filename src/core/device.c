@@ -1,0 +1,84 @@
+/// \file device.c
+/// The CPU's part of device.h, and the way to the other part, which device_cuda.cu holds in builds with CUDA.
+#include "core/device.h"
+
+#include "core/buffer.h"
+#include "core/device_cuda.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+scree_device_def scree_default_device_def(void)
+{
+    return (scree_device_def){.number = 0, .block = 128, .arena_bytes = (int64_t)256 << 20};
+}
+
+scree_status scree_device_open(scree_device **device, const scree_device_def *def, scree_report *report)
+{
+    *device = NULL;
+#ifdef SCREE_CUDA
+    return scree_cuda_open(device, def, report);
+#else
+    (void)def;
+    scree_report_add(report,
+                     "this build of scree has no CUDA: configure it with \"cmake --preset cuda\", or run on the "
+                     "CPU");
+    return SCREE_NO_DEVICE;
+#endif
+}
+
+void scree_device_close(scree_device *device)
+{
+    if (device != NULL) SCREE_CUDA_CALL(scree_cuda_close(device));
+}
+
+scree_status scree_device_status(scree_device *device, scree_report *report)
+{
+    scree_status status = SCREE_OK;
+    if (device != NULL) SCREE_CUDA_CALL(status = scree_cuda_status(device, report));
+    (void)report;
+    return status;
+}
+
+void *scree_device_alloc(scree_device *device, int64_t num_items, size_t item_size)
+{
+    if (device == NULL) return scree_buffer_alloc(num_items, item_size);
+    void *memory = NULL;
+    if (num_items >= 0 && item_size > 0 && (uint64_t)num_items <= (uint64_t)PTRDIFF_MAX / 2 / item_size)
+        SCREE_CUDA_CALL(memory = scree_cuda_alloc(device, num_items * (int64_t)item_size));
+    return memory;
+}
+
+void scree_device_free(scree_device *device, void *memory)
+{
+    if (device == NULL) free(memory);
+    else if (memory != NULL) SCREE_CUDA_CALL(scree_cuda_free(device, memory));
+}
+
+void scree_device_write(scree_device *device, void *to, const void *from, size_t num_bytes)
+{
+    if (num_bytes == 0) return;
+    if (device == NULL) memcpy(to, from, num_bytes);
+    else SCREE_CUDA_CALL(scree_cuda_write(device, to, from, num_bytes));
+}
+
+void scree_device_read(scree_device *device, void *to, const void *from, size_t num_bytes)
+{
+    if (num_bytes == 0) return;
+    if (device == NULL) memcpy(to, from, num_bytes);
+    else SCREE_CUDA_CALL(scree_cuda_read(device, to, from, num_bytes));
+}
+
+void scree_device_copy(scree_device *device, void *to, const void *from, size_t num_bytes)
+{
+    if (num_bytes == 0) return;
+    if (device == NULL) memcpy(to, from, num_bytes);
+    else SCREE_CUDA_CALL(scree_cuda_copy(device, to, from, num_bytes));
+}
+
+void scree_device_zero(scree_device *device, void *memory, size_t num_bytes)
+{
+    if (num_bytes == 0) return;
+    if (device == NULL) memset(memory, 0, num_bytes);
+    else SCREE_CUDA_CALL(scree_cuda_zero(device, memory, num_bytes));
+}

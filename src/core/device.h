@@ -1,0 +1,52 @@
+/// \file device.h
+/// Where arrays lie and kernels run: an NVIDIA GPU, or the CPU, which NULL stands for everywhere. What is asked of a
+/// GPU is done in the order of the calls, but later; reading waits for it. The first failure stays: everything after it
+/// does nothing, and scree_device_status() tells it.
+#ifndef SCREE_DEVICE_H
+#define SCREE_DEVICE_H
+
+#include "scree/base.h"
+
+#ifdef __cplusplus
+extern "C"
+{
+#endif
+
+    typedef struct scree_device scree_device;
+
+    /// How a GPU is used. Start from scree_default_device_def().
+    typedef struct scree_device_def
+    {
+        int32_t number;      ///< of the GPU, from 0
+        int32_t block;       ///< threads of a block, 1 to 128; no result depends on it
+        int64_t arena_bytes; ///< taken at the start and whenever more is needed, > 0; 0: every array by itself, for
+                             ///< tools that look for accesses beyond its ends
+    } scree_device_def;
+
+    scree_device_def scree_default_device_def(void);
+
+    /// Opens a GPU. Refused with a message: SCREE_NO_DEVICE (this build has no CUDA, there is no GPU of this number,
+    /// GPU or driver are too old), SCREE_OUT_OF_MEMORY.
+    scree_status scree_device_open(scree_device **device, const scree_device_def *def, scree_report *report);
+    /// Frees all memory of the GPU that was taken through it. NULL is allowed.
+    void scree_device_close(scree_device *device);
+    /// Waits. SCREE_OK, or SCREE_DEVICE_FAILED with a message.
+    scree_status scree_device_status(scree_device *device, scree_report *report);
+
+    /// Uninitialised memory for num_items. Never NULL but if memory is out or the size overflows; 0 items get memory
+    /// too.
+    void *scree_device_alloc(scree_device *device, int64_t num_items, size_t item_size);
+    void scree_device_free(scree_device *device, void *memory);
+
+    /// Copies to the device; `from` can be reused at once.
+    void scree_device_write(scree_device *device, void *to, const void *from, size_t num_bytes);
+    /// Copies from the device, when all that was asked before is done. After a failure *to stays as it was.
+    void scree_device_read(scree_device *device, void *to, const void *from, size_t num_bytes);
+    /// Copies within the device; the two must not overlap.
+    void scree_device_copy(scree_device *device, void *to, const void *from, size_t num_bytes);
+    void scree_device_zero(scree_device *device, void *memory, size_t num_bytes);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,173 @@
+/// \file device_cuda.cu
+/// Memory and copies of an NVIDIA GPU. One stream; errors are kept, not returned, so that the step reads as on the CPU.
+#include "core/device_cuda.cuh"
+
+#include "core/device_cuda.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/// Compute capability that scree is compiled for, at least: 8.0 stands for 80.
+#define SCREE_CUDA_CAPABILITY 80
+
+/// The message to an error of the first calls.
+static scree_status refuse(cudaError_t error, int number, scree_report *report)
+{
+    int driver = 0, runtime = 0;
+    cudaDriverGetVersion(&driver);
+    cudaRuntimeGetVersion(&runtime);
+    if (error == cudaErrorInsufficientDriver)
+        scree_report_add(report,
+                         "the NVIDIA driver offers CUDA %d.%d, this build of scree needs %d.%d: update the driver, or "
+                         "run on the CPU",
+                         driver / 1000, driver % 1000 / 10, runtime / 1000, runtime % 1000 / 10);
+    else if (error == cudaErrorNoDevice)
+        scree_report_add(report,
+                         "there is no NVIDIA GPU here, or none that this process may use (CUDA_VISIBLE_DEVICES): "
+                         "run on the CPU");
+    else
+        scree_report_add(report, "GPU %d cannot be used: %s; run on the CPU, or on another GPU", number,
+                         cudaGetErrorString(error));
+    return error == cudaErrorMemoryAllocation ? SCREE_OUT_OF_MEMORY : SCREE_NO_DEVICE;
+}
+
+/// Is GPU `number` there and new enough? Its properties.
+static scree_status find_device(int number, cudaDeviceProp *properties, scree_report *report)
+{
+    int num_devices = 0;
+    cudaError_t error = cudaGetDeviceCount(&num_devices);
+    if (error == cudaSuccess && num_devices == 0) error = cudaErrorNoDevice;
+    if (error != cudaSuccess) return refuse(error, number, report);
+    if (number < 0 || number >= num_devices)
+    {
+        scree_report_add(report, "there is no GPU %d: this machine has %d, counted from 0", number, num_devices);
+        return SCREE_NO_DEVICE;
+    }
+    error = cudaGetDeviceProperties(properties, number);
+    if (error == cudaSuccess) error = cudaSetDevice(number);
+    if (error != cudaSuccess) return refuse(error, number, report);
+    if (10 * properties->major + properties->minor < SCREE_CUDA_CAPABILITY)
+    {
+        scree_report_add(report,
+                         "GPU %d, \"%s\", has compute capability %d.%d; scree needs %d.%d or more: run on another GPU, "
+                         "or on the CPU",
+                         number, properties->name, properties->major, properties->minor, SCREE_CUDA_CAPABILITY / 10,
+                         SCREE_CUDA_CAPABILITY % 10);
+        return SCREE_NO_DEVICE;
+    }
+    return SCREE_OK;
+}
+
+/// One more block of memory for the arena, of num_bytes at least.
+static bool add_block(scree_device *device, int64_t num_bytes)
+{
+    // as much again as there is, so that growing costs little in all; less if there is no more
+    int64_t wanted = device->arena.num_bytes > device->arena_bytes ? device->arena.num_bytes : device->arena_bytes;
+    if (wanted < num_bytes || device->arena_bytes == 0) wanted = num_bytes;
+    void *block = NULL;
+    if (cudaMalloc(&block, (size_t)wanted) != cudaSuccess)
+    {
+        cudaGetLastError(); // told by the NULL that the caller gets
+        wanted = num_bytes;
+        if (cudaMalloc(&block, (size_t)wanted) != cudaSuccess)
+        {
+            cudaGetLastError();
+            return false;
+        }
+    }
+    if (scree_arena_add_block(&device->arena, block, wanted) == SCREE_OK) return true;
+    cudaFree(block);
+    return false;
+}
+
+scree_status scree_cuda_open(scree_device **device, const scree_device_def *def, scree_report *report)
+{
+    cudaDeviceProp properties;
+    const scree_status status = find_device(def->number, &properties, report);
+    if (status != SCREE_OK) return status;
+    scree_device *d = (scree_device *)calloc(1, sizeof *d);
+    if (d == NULL) return SCREE_OUT_OF_MEMORY;
+    d->block = def->block;
+    d->arena_bytes = def->arena_bytes;
+    memcpy(d->name, properties.name, sizeof d->name);
+    const cudaError_t error = cudaStreamCreate(&d->stream);
+    if (error != cudaSuccess)
+    {
+        free(d);
+        return refuse(error, def->number, report);
+    }
+    if (def->arena_bytes > 0 && !add_block(d, def->arena_bytes))
+    {
+        scree_report_add(report,
+                         "GPU %d, \"%s\", has no %lld MB of free memory to start with: end what else runs there, "
+                         "or run on the CPU",
+                         def->number, d->name, (long long)(def->arena_bytes >> 20));
+        scree_cuda_close(d);
+        return SCREE_OUT_OF_MEMORY;
+    }
+    *device = d;
+    return SCREE_OK;
+}
+
+void scree_cuda_close(scree_device *device)
+{
+    for (int64_t k = 0; k < device->arena.num_pieces; ++k)
+        if (device->arena.pieces[k].is_first) cudaFree(device->arena.pieces[k].address);
+    scree_arena_destroy(&device->arena);
+    cudaStreamDestroy(device->stream);
+    free(device);
+}
+
+scree_status scree_cuda_status(scree_device *device, scree_report *report)
+{
+    scree_cuda_note(device, cudaStreamSynchronize(device->stream));
+    if (device->error == cudaSuccess) return SCREE_OK;
+    scree_report_add(report,
+                     "GPU \"%s\" has failed: %s. What it held is lost: start again from the last checkpoint, or run on "
+                     "the CPU",
+                     device->name, cudaGetErrorString(device->error));
+    return SCREE_DEVICE_FAILED;
+}
+
+void *scree_cuda_alloc(scree_device *device, int64_t num_bytes)
+{
+    if (device->error != cudaSuccess) return NULL;
+    void *memory = device->arena_bytes > 0 ? scree_arena_take(&device->arena, num_bytes) : NULL;
+    if (memory != NULL) return memory;
+    if (device->arena_bytes == 0)
+        return cudaMalloc(&memory, (size_t)(num_bytes > 0 ? num_bytes : 1)) == cudaSuccess ? memory : NULL;
+    // a piece takes up to SCREE_ARENA_ALIGNMENT more than it was asked for
+    return add_block(device, num_bytes + SCREE_ARENA_ALIGNMENT) ? scree_arena_take(&device->arena, num_bytes) : NULL;
+}
+
+void scree_cuda_free(scree_device *device, void *memory)
+{
+    if (device->arena_bytes == 0) scree_cuda_note(device, cudaFree(memory));
+    else scree_arena_give_back(&device->arena, memory);
+}
+
+void scree_cuda_write(scree_device *device, void *to, const void *from, size_t num_bytes)
+{
+    if (device->error != cudaSuccess) return;
+    scree_cuda_note(device, cudaMemcpyAsync(to, from, num_bytes, cudaMemcpyHostToDevice, device->stream));
+    scree_cuda_note(device, cudaStreamSynchronize(device->stream));
+}
+
+void scree_cuda_read(scree_device *device, void *to, const void *from, size_t num_bytes)
+{
+    if (device->error != cudaSuccess) return;
+    scree_cuda_note(device, cudaMemcpyAsync(to, from, num_bytes, cudaMemcpyDeviceToHost, device->stream));
+    scree_cuda_note(device, cudaStreamSynchronize(device->stream));
+}
+
+void scree_cuda_copy(scree_device *device, void *to, const void *from, size_t num_bytes)
+{
+    if (device->error != cudaSuccess) return;
+    scree_cuda_note(device, cudaMemcpyAsync(to, from, num_bytes, cudaMemcpyDeviceToDevice, device->stream));
+}
+
+void scree_cuda_zero(scree_device *device, void *memory, size_t num_bytes)
+{
+    if (device->error != cudaSuccess) return;
+    scree_cuda_note(device, cudaMemsetAsync(memory, 0, num_bytes, device->stream));
+}

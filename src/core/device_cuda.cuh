@@ -1,0 +1,28 @@
+/// \file device_cuda.cuh
+/// An opened GPU, as the .cu files see it.
+#ifndef SCREE_DEVICE_CUDA_CUH
+#define SCREE_DEVICE_CUDA_CUH
+
+#include <cuda_runtime.h>
+
+#include "core/arena.h"
+#include "core/device.h"
+
+struct scree_device
+{
+    cudaStream_t stream;
+    int32_t block;
+    cudaError_t error; ///< the first one; nothing is done after it
+    int64_t arena_bytes;
+    scree_arena arena;
+    char name[256];
+};
+
+/// Keeps the first error. True if all is well.
+static inline bool scree_cuda_note(scree_device *device, cudaError_t error)
+{
+    if (device->error == cudaSuccess) device->error = error;
+    return device->error == cudaSuccess;
+}
+
+#endif

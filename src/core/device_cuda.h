@@ -1,0 +1,39 @@
+/// \file device_cuda.h
+/// What device.c and sort.c call in builds with CUDA, where SCREE_CUDA is defined. Errors are kept in the device.
+#ifndef SCREE_DEVICE_CUDA_H
+#define SCREE_DEVICE_CUDA_H
+
+#include "core/device.h"
+#include "core/sort.h"
+
+/// A call that is there in builds with CUDA only; elsewhere no device exists.
+#ifdef SCREE_CUDA
+#define SCREE_CUDA_CALL(call) ((void)(call))
+#else
+#define SCREE_CUDA_CALL(call) ((void)0)
+#endif
+
+#ifdef __cplusplus
+extern "C"
+{
+#endif
+
+    scree_status scree_cuda_open(scree_device **device, const scree_device_def *def, scree_report *report);
+    void scree_cuda_close(scree_device *device);
+    scree_status scree_cuda_status(scree_device *device, scree_report *report);
+    void *scree_cuda_alloc(scree_device *device, int64_t num_bytes);
+    void scree_cuda_free(scree_device *device, void *memory);
+    void scree_cuda_write(scree_device *device, void *to, const void *from, size_t num_bytes);
+    void scree_cuda_read(scree_device *device, void *to, const void *from, size_t num_bytes);
+    void scree_cuda_copy(scree_device *device, void *to, const void *from, size_t num_bytes);
+    void scree_cuda_zero(scree_device *device, void *memory, size_t num_bytes);
+
+    /// Scratch memory [bytes] that the sort of num_items takes.
+    int64_t scree_cuda_sort_scratch(scree_device *device, int64_t num_items, bool has_values);
+    /// scree_sort() on the device of the buffers.
+    void scree_cuda_sort(scree_sort_buffers *buffers, int64_t num_items, int first_bit);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

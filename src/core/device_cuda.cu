@@ -16,7 +16,12 @@ static scree_status refuse(cudaError_t error, int number, scree_report *report)
     int driver = 0, runtime = 0;
     cudaDriverGetVersion(&driver);
     cudaRuntimeGetVersion(&runtime);
-    if (error == cudaErrorInsufficientDriver)
+    if (error == cudaErrorInsufficientDriver && driver == 0)
+        scree_report_add(report,
+                         "no NVIDIA driver is installed here: install one for CUDA %d.%d or later, or run on the "
+                         "CPU",
+                         runtime / 1000, runtime % 1000 / 10);
+    else if (error == cudaErrorInsufficientDriver)
         scree_report_add(report,
                          "the NVIDIA driver offers CUDA %d.%d, this build of scree needs %d.%d: update the driver, or "
                          "run on the CPU",

@@ -124,6 +124,7 @@ static std::vector<unsigned char> search(scree_device *device, int64_t *num_pair
         input.radii = radii;
         input.walls = walls;
         input.num_particles = num_particles;
+        input.compares_spheres = num_particles == 40;
         input.num_walls = (int64_t)b.walls.size();
         SCREE_CHECK_INT(scree_broad_phase_find(&broad_phase, &input), SCREE_OK);
         const auto found = found_by(&broad_phase, num_particles, num_particles + input.num_walls);
@@ -273,6 +274,7 @@ static const faulty_machine machines[] = {
     {"CUDA_ON_CPU_DEVICES=2", "2", SCREE_NO_DEVICE, "there is no GPU 2: this machine has 2, counted from 0"},
     {"CUDA_ON_CPU_DRIVER=12040", "0", SCREE_NO_DEVICE,
      "the NVIDIA driver offers CUDA 12.4, this build of scree needs 13.0"},
+    {"CUDA_ON_CPU_DRIVER=0", "0", SCREE_NO_DEVICE, "no NVIDIA driver is installed here"},
     {"CUDA_ON_CPU_CAPABILITY=75", "0", SCREE_NO_DEVICE, "has compute capability 7.5; scree needs 8.0"},
     {"CUDA_ON_CPU_MEMORY=100000000", "0", SCREE_OUT_OF_MEMORY, "has no 256 MB of free memory to start with"},
     {"CUDA_ON_CPU_FAULT_AT=1", "0", SCREE_DEVICE_FAILED, "has failed: an illegal memory access"},

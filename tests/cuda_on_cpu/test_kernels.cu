@@ -44,7 +44,6 @@ SCREE_DECLARE_LAUNCH_CUDA(scree_gather)
 SCREE_DECLARE_LAUNCH_CUDA(scree_work)
 SCREE_DECLARE_LAUNCH_CUDA(scree_collision)
 SCREE_DECLARE_LAUNCH_CUDA(scree_wall_load)
-SCREE_DECLARE_LAUNCH_CUDA(scree_collision)
 SCREE_DECLARE_LAUNCH_CUDA(scree_predict)
 SCREE_DECLARE_LAUNCH_CUDA(scree_correct)
 SCREE_DECLARE_LAUNCH_CUDA(scree_boxes)
@@ -638,29 +637,6 @@ static void test_wall_loads()
             args.sums = where.make<scree_real>(num_blocks * args.num_moving);
             LAUNCH_ON(where, scree_wall_load, args, num_blocks);
             where.keep(args.sums, num_blocks * args.num_moving);
-        });
-}
-
-static void test_collisions()
-{
-    check_two_sides(
-        [](side &where)
-        {
-            const int64_t n = s->contacts.num_contacts, num_old = s->old_contacts.num_contacts;
-            std::vector<double> old((size_t)num_old + 1);
-            for (int64_t k = 0; k < num_old; ++k) old[(size_t)k] = 1e-3 / (double)(k + 1);
-            scree_collision_args args = {};
-            args.contacts = contacts_on(where, s->contacts, s->broad_phase.num_pairs);
-            args.bodies = motion_on(where);
-            args.old_of_contact = where.copy(b->old_of_contact, n);
-            args.old_normal = where.copy(old.data(), num_old + 1);
-            args.old_tangential = where.copy(old.data(), num_old + 1);
-            args.time_step = s->time_step;
-            args.normal = where.make<double>(n);
-            args.tangential = where.make<double>(n);
-            LAUNCH_ON(where, scree_collision, args, n);
-            where.keep(args.normal, n);
-            where.keep(args.tangential, n);
         });
 }
 

@@ -118,26 +118,30 @@ def draw_collisions(fields, run, path):
     plt.close(figure)
 
 
+def field_pictures(run, axis=1):
+    """Pictures that the run has numbers for: functions of run and path by name."""
+    fields = Fields(run)
+    pictures = {
+        "porosity": lambda run, path: draw_plane(fields, run, axis, path, with_arrows=False),
+        "velocity": lambda run, path: draw_plane(fields, run, axis, path, with_arrows=True),
+    }
+    if moving_walls(run.series()):
+        pictures["power"] = draw_power
+    if fields.collisions:
+        pictures["collisions"] = lambda run, path: draw_collisions(fields, run, path)
+    return pictures
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("run", help="folder of the run")
     parser.add_argument("--across", choices="xyz", default="y", help="axis that fields are averaged along")
     arguments = parser.parse_args()
     run = Run(arguments.run)
-    fields = Fields(run)
-    axis = "xyz".index(arguments.across)
-    folder = run.pictures()
-    draw_plane(fields, run, axis, folder / "porosity.png", with_arrows=False)
-    draw_plane(fields, run, axis, folder / "velocity.png", with_arrows=True)
-    names = ["porosity", "velocity"]
-    if moving_walls(run.series()):
-        draw_power(run, folder / "power.png")
-        names.append("power")
-    if fields.collisions:
-        draw_collisions(fields, run, folder / "collisions.png")
-        names.append("collisions")
-    for name in names:
-        print(folder / f"{name}.png")
+    for name, save in field_pictures(run, "xyz".index(arguments.across)).items():
+        path = run.pictures() / f"{name}.png"
+        save(run, path)
+        print(path)
 
 
 if __name__ == "__main__":

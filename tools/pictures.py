@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
-"""All pictures of a run into RUN/pictures: pile, strip, energy, and height_map if an angle of repose was measured."""
+"""All pictures of a run into RUN/pictures: pile, strip, energy, height_map if an angle of repose was measured, and those of
+fields.py if fields were."""
 import argparse
 
 from energy_plot import draw_energies
+from fields import field_pictures
 from flow import save_flow
 from pile import load, save_pile
 from repose_plot import draw_height_map, has_repose
@@ -17,6 +19,8 @@ def main():
     pictures = {"pile": save_pile, "strip": save_flow, "energy": draw_energies}
     if has_repose(run.summary()):
         pictures["height_map"] = draw_height_map
+    if (run.folder / "fields.vtkhdf").exists():
+        pictures |= field_pictures(run)
     for name, save in pictures.items():
         path = run.pictures() / f"{name}.png"
         save(run, path)

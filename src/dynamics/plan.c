@@ -82,6 +82,18 @@ static void describe_forces(const scree_simulation *s, char *text, size_t size)
                  has_spring ? ", tangential spring" : "", has_rolling ? ", rolling resistance" : "");
 }
 
+/// The fields that are measured, if any.
+static void print_averages(const scree_simulation *s, FILE *out)
+{
+    const scree_averages *averages = &s->averages;
+    if (!averages->is_on) return;
+    char text[96];
+    snprintf(text, sizeof text, "%lld samples in periods of %.4g s", (long long)averages->samples, averages->period);
+    print_stage(out, "fields", text, 2 * 7 * sizeof(double), "cell");
+    if (averages->num_bins > 0)
+        print_stage(out, "collisions", "energies of contacts from start to end", 4 * sizeof(double), "contact");
+}
+
 void scree_simulation_print_plan(const scree_simulation *simulation, void *stream)
 {
     FILE *out = stream;
@@ -106,6 +118,8 @@ void scree_simulation_print_plan(const scree_simulation *simulation, void *strea
     print_stage(out, "gather", "per particle over its row of contacts, in fixed order", 0, "");
     print_stage(out, "correct", "second half kick", 0, "");
     print_stage(out, "work", "energy balance and critical time step", 0, "");
+    if (is_moving) print_stage(out, "loads", "torque, force and work of the moving walls", 0, "");
+    print_averages(s, out);
     const double particles =
         (double)s->particles.num_particles * (double)(bytes_moving + bytes_constant + bytes_search);
     const double pairs = (double)s->broad_phase.num_pairs * (double)(bytes_pair + largest_pair + bytes_contact);

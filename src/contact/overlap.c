@@ -20,21 +20,19 @@ static bool reserve_pieces(scree_overlap_body *body, int32_t max)
 {
     body->max_vertices = 0;
     body->max_triangles = 0;
-    body->max_edges = 0;
     bool is_done = renew(&body->points, max, sizeof *body->points);
     is_done = renew(&body->vertex_id, max, sizeof *body->vertex_id) && is_done;
-    is_done = renew(&body->along, max, sizeof *body->along) && is_done;
+    is_done = renew(&body->depth, max, sizeof *body->depth) && is_done;
     is_done = renew(&body->outcode, max, sizeof *body->outcode) && is_done;
     is_done = renew(&body->kept, max, sizeof *body->kept) && is_done;
     is_done = renew(&body->inside, max, sizeof *body->inside) && is_done;
     is_done = renew(&body->triangles, max, sizeof *body->triangles) && is_done;
     is_done = renew(&body->triangle_boxes, max, sizeof *body->triangle_boxes) && is_done;
-    is_done = renew(&body->edges, 2 * (int64_t)max, sizeof *body->edges) && is_done;
-    is_done = renew(&body->rows, max, sizeof *body->rows) && is_done;
+    is_done = renew(&body->links, 2 * (int64_t)max, sizeof *body->links) && is_done;
+    is_done = renew(&body->patch, max, sizeof *body->patch) && is_done;
     if (!is_done) return false;
     body->max_vertices = max;
     body->max_triangles = max;
-    body->max_edges = 2 * max;
     return true;
 }
 
@@ -50,16 +48,18 @@ static bool reserve_shape(scree_overlap_body *body, int32_t max)
     return true;
 }
 
+/// Room for `max` crossings, and for the corners that they and the vertices may make.
 static bool reserve_crossings(scree_overlap_slice *slice, int32_t max)
 {
+    const int64_t max_corners = (int64_t)max + slice->body[0].max_vertices + slice->body[1].max_vertices;
     slice->max_crossings = 0;
-    slice->max_table = 0;
+    slice->max_corners = 0;
     bool is_done = renew(&slice->crossings, max, sizeof *slice->crossings);
-    is_done = renew(&slice->segments, 2 * (int64_t)max, sizeof *slice->segments) && is_done;
-    is_done = renew(&slice->table, 4 * (int64_t)max, sizeof *slice->table) && is_done;
+    is_done = renew(&slice->segments, max, sizeof *slice->segments) && is_done;
+    is_done = renew(&slice->corners, max_corners, sizeof *slice->corners) && is_done;
     if (!is_done) return false;
     slice->max_crossings = max;
-    slice->max_table = 4 * max;
+    slice->max_corners = (int32_t)max_corners;
     return true;
 }
 
@@ -67,12 +67,13 @@ scree_overlap_workspace *scree_overlap_workspace_create(void)
 {
     scree_overlap_workspace *workspace = calloc(1, sizeof *workspace);
     if (workspace == NULL) return NULL;
-    bool is_done = reserve_crossings(&workspace->slice, 64);
+    bool is_done = true;
     for (int side = 0; side < 2; ++side)
     {
         is_done = reserve_pieces(workspace->slice.body + side, 512) && is_done;
         is_done = reserve_shape(workspace->slice.body + side, 1024) && is_done;
     }
+    is_done = is_done && reserve_crossings(&workspace->slice, 128);
     if (is_done) return workspace;
     scree_overlap_workspace_destroy(workspace);
     return NULL;
@@ -95,6 +96,7 @@ scree_status scree_overlap_workspace_grow(scree_overlap_workspace *workspace)
         if (slice->lack == SCREE_LACK_PIECES) is_done = reserve_pieces(body, 2 * body->max_triangles) && is_done;
         if (slice->lack == SCREE_LACK_SHAPE) is_done = reserve_shape(body, 2 * body->max_shape_triangles) && is_done;
     }
+    if (slice->lack == SCREE_LACK_PIECES) is_done = is_done && reserve_crossings(slice, slice->max_crossings);
     return is_done ? SCREE_OK : SCREE_OUT_OF_MEMORY;
 }
 
@@ -107,20 +109,20 @@ void scree_overlap_workspace_destroy(scree_overlap_workspace *workspace)
         scree_overlap_body *body = slice->body + side;
         free(body->points);
         free(body->vertex_id);
-        free(body->along);
+        free(body->depth);
         free(body->outcode);
         free(body->inside);
         free(body->kept);
         free(body->triangles);
         free(body->triangle_boxes);
-        free(body->edges);
-        free(body->rows);
+        free(body->links);
+        free(body->patch);
         free(body->vertex_slot);
         free(body->triangle_slot);
     }
     free(slice->crossings);
     free(slice->segments);
-    free(slice->table);
+    free(slice->corners);
     free(workspace);
 }
 

@@ -1,87 +1,198 @@
 /// \file overlap_crossings_kernel.h
-/// First pass of an overlap: which edges pass through which triangles of the other body, and which vertices lie
-/// inside it.
+/// First pass of an overlap: segments in which triangles of the two bodies meet, crossings of edges with triangles at
+/// the ends of the segments, and which vertices lie inside the other body.
 #ifndef SCREE_OVERLAP_CROSSINGS_KERNEL_H
 #define SCREE_OVERLAP_CROSSINGS_KERNEL_H
 
 #include "contact/box_index_kernel.h"
 #include "contact/overlap_hierarchy_kernel.h"
-#include "contact/overlap_parts.h"
+#include "contact/overlap_intervals_kernel.h"
+#include "contact/overlap_meet_kernel.h"
 #include "contact/overlap_signs_kernel.h"
 #include "contact/triangle_filter_kernel.h"
 
-/// Are all corners of face g beyond doubt on one side of the plane of face f?
-SCREE_FN bool scree_face_misses_plane(const scree_face *g, const scree_face *f, scree_real tolerance)
+/// Records the end of a segment as a crossing if the edge runs up its vertex ids in this triangle; else the crossing is
+/// recorded from the other triangle of the edge. Returns what the segment keeps of it.
+SCREE_FN int32_t scree_overlap_add_end(scree_overlap_slice *slice, const scree_segment_end *end, bool is_first,
+                                       int32_t triangle_a, int32_t triangle_b)
 {
-    const scree_real margin = tolerance * f->size * f->size;
-    const scree_real h0 = scree_face_height(f, g->p[0]);
-    const scree_real h1 = scree_face_height(f, g->p[1]);
-    const scree_real h2 = scree_face_height(f, g->p[2]);
-    return (int32_t)(scree_min(scree_min(h0, h1), h2) > margin) | (int32_t)(scree_max(scree_max(h0, h1), h2) < -margin);
+    const int32_t own = end->is_of_b ? triangle_b : triangle_a;
+    scree_overlap_triangle *triangle = slice->body[end->is_of_b].triangles + own;
+    if ((triangle->face.reversed >> end->side & 1) != 0) return ~(end->side + 4 * end->is_of_b);
+    scree_overlap_crossing *crossing = slice->crossings + slice->num_crossings;
+    crossing->point = scree_segment_end_point(end, &triangle->face);
+    crossing->triangle = own;
+    crossing->side = end->side;
+    crossing->through = end->is_of_b ? triangle_a : triangle_b;
+    // around the part of a triangle inside the other body: a segment of A runs from a leaving side to an entering one
+    crossing->sign = is_first == (end->is_of_b != 0) ? 1 : -1;
+    crossing->is_of_b = end->is_of_b;
+    crossing->patch = 0;
+
+    // in their order along the edge
+    const scree_vec3 start = triangle->face.p[end->side];
+    const scree_vec3 along = scree_vec3_sub(triangle->face.p[end->side == 2 ? 0 : end->side + 1], start);
+    int32_t *link = triangle->crossing + end->side;
+    while (*link >= 0 && scree_vec3_dot(along, slice->crossings[*link].point) < scree_vec3_dot(along, crossing->point))
+        link = &slice->crossings[*link].next;
+    crossing->next = *link;
+    *link = slice->num_crossings;
+    return slice->num_crossings++;
 }
 
-/// Rows of body `side` against one block of the other's near triangles: boxes that overlap, unless one triangle is
-/// beyond doubt on one side of the other's plane. Then neither can cross the other, in the hierarchy neither.
-SCREE_FN void scree_overlap_find_rows(scree_overlap_slice *slice, int32_t side, int32_t block)
+/// Records a segment with both of its ends. False if there are too many.
+SCREE_FN bool scree_overlap_add_segment(scree_overlap_slice *slice, int32_t triangle_a, int32_t triangle_b,
+                                        const scree_segment_end *p, const scree_segment_end *q)
 {
-    scree_overlap_body *own = slice->body + side;
-    const scree_overlap_body *other = slice->body + 1 - side;
-    const int32_t begin = SCREE_INDEX_MAX * block;
-    const int32_t rest = other->num_near_triangles - begin;
-    const int32_t num = rest < SCREE_INDEX_MAX ? rest : SCREE_INDEX_MAX;
-    scree_box_index index;
-    scree_index_build(&index, other->triangle_boxes + begin, num, slice->common);
-    for (int32_t f = 0; f < own->num_near_triangles; ++f)
+    if (slice->num_segments == slice->max_crossings || slice->num_crossings + 2 > slice->max_crossings) return false;
+    scree_overlap_segment *segment = slice->segments + slice->num_segments++;
+    segment->triangle_a = triangle_a;
+    segment->triangle_b = triangle_b;
+    segment->end[0] = scree_overlap_add_end(slice, p, true, triangle_a, triangle_b);
+    segment->end[1] = scree_overlap_add_end(slice, q, false, triangle_a, triangle_b);
+    return true;
+}
+
+/// The crossing that was recorded from the other triangle of the edge, or -1.
+SCREE_FN int32_t scree_overlap_find_crossing(const scree_overlap_slice *slice, const scree_shape_view *const *shape,
+                                             const scree_overlap_segment *segment, int32_t code)
+{
+    const int32_t is_of_b = code >> 2;
+    const int32_t side = code & 3;
+    const scree_overlap_body *body = slice->body + is_of_b;
+    const int32_t own = is_of_b ? segment->triangle_b : segment->triangle_a;
+    const int32_t through = is_of_b ? segment->triangle_a : segment->triangle_b;
+    const int32_t neighbour = scree_kept_neighbour(body, shape[is_of_b], own, side);
+    if (neighbour < 0) return -1;
+    // there the side starts at the vertex where it ends here
+    const int32_t start = body->triangles[own].v[side == 2 ? 0 : side + 1];
+    const scree_overlap_triangle *triangle = body->triangles + neighbour;
+    const int32_t k = triangle->v[0] == start ? 0 : triangle->v[1] == start ? 1 : 2;
+    int32_t c = triangle->crossing[k];
+    while (c >= 0 && slice->crossings[c].through != through) c = slice->crossings[c].next;
+    return c;
+}
+
+/// Ties each segment to the crossings at its ends. Every crossing ends two segments, one in each triangle of its edge.
+SCREE_FN void scree_overlap_tie_segments(scree_overlap_slice *slice, const scree_shape_view *const *shape)
+{
+    int32_t num_tied = 0;
+    for (int32_t s = 0; s < slice->num_segments; ++s)
     {
-        const scree_face *face = &own->triangles[f].face;
-        uint64_t candidates = scree_index_query(&index, own->triangle_boxes[f]);
-        uint64_t row = 0;
-        for (; candidates != 0; candidates &= candidates - 1)
+        scree_overlap_segment *segment = slice->segments + s;
+        for (int32_t end = 0; end < 2; ++end)
         {
-            const int32_t g = scree_lowest_bit(candidates);
-            const scree_face *other_face = &other->triangles[begin + g].face;
-            if (num > SCREE_INDEX_DIRECT &&
-                !scree_box_overlaps(own->triangle_boxes[f], other->triangle_boxes[begin + g]))
-                continue;
-            if (slice->sign_tolerance > 0 && (scree_face_misses_plane(other_face, face, slice->sign_tolerance) ||
-                                              scree_face_misses_plane(face, other_face, slice->sign_tolerance)))
-                continue;
-            row |= (uint64_t)1 << g;
+            if (segment->end[end] >= 0) continue;
+            segment->end[end] = scree_overlap_find_crossing(slice, shape, segment, ~segment->end[end]);
+            num_tied += segment->end[end] >= 0;
         }
-        own->rows[f] = row;
+        if (segment->end[0] < 0 || segment->end[1] < 0) slice->is_closed = false;
     }
+    if (num_tied != slice->num_crossings) slice->is_closed = false;
 }
 
-/// Rows of B from those of A, where one block holds all.
-SCREE_FN void scree_overlap_transpose_rows(scree_overlap_slice *slice)
+/// Does side k of face `own`, of body `is_of_b`, pass through face `other`? +1 where the side, running up its vertex
+/// ids, enters the other body, -1 where it leaves.
+SCREE_FN int32_t scree_overlap_decide(const scree_face *own, int32_t k, const scree_face *other, int32_t is_of_b,
+                                      scree_real tolerance, scree_vec3 *point)
+{
+    const scree_line edge = scree_face_side(own, k);
+    const scree_vec3 along = scree_vec3_sub(edge.p[1], edge.p[0]);
+    if (tolerance > 0)
+    {
+        const scree_real size = scree_abs(along.x) + scree_abs(along.y) + scree_abs(along.z);
+        const scree_sign_verdict verdict = scree_edge_sign(&edge, size, other, tolerance, point);
+        if (verdict != SCREE_SIGN_UNSURE) return (int32_t)verdict;
+    }
+    return is_of_b ? -scree_edge_b_crosses(other, &edge, point) : scree_edge_a_crosses(&edge, other, point);
+}
+
+/// Two triangles decided side by side: the ends that are found pair up into segments. False if there are too many.
+SCREE_FN bool scree_overlap_meet_by_sides(scree_overlap_slice *slice, int32_t triangle_a, int32_t triangle_b)
+{
+    const scree_face *face[2];
+    face[0] = &slice->body[0].triangles[triangle_a].face;
+    face[1] = &slice->body[1].triangles[triangle_b].face;
+    scree_segment_end ends[2][6]; // first ends, last ends
+    int32_t num[2] = {0, 0};
+    for (int32_t is_of_b = 0; is_of_b < 2; ++is_of_b)
+    {
+        for (int32_t k = 0; k < 3; ++k)
+        {
+            scree_vec3 point;
+            const int32_t sign =
+                scree_overlap_decide(face[is_of_b], k, face[1 - is_of_b], is_of_b, slice->sign_tolerance, &point);
+            if (sign == 0) continue;
+            const bool is_entering = sign * scree_face_sense(face[is_of_b], k) > 0;
+            const int32_t kind = is_entering == (is_of_b != 0) ? 0 : 1;
+            scree_segment_end *end = ends[kind] + num[kind]++;
+            end->is_of_b = is_of_b;
+            end->side = k;
+            end->point = point;
+            end->has_point = true;
+        }
+    }
+    const int32_t num_pairs = num[0] < num[1] ? num[0] : num[1];
+    if (num[0] != num[1]) slice->is_closed = false;
+    for (int32_t i = 0; i < num_pairs; ++i)
+        if (!scree_overlap_add_segment(slice, triangle_a, triangle_b, ends[0] + i, ends[1] + i)) return false;
+    return true;
+}
+
+/// Two triangles whose boxes overlap. False if there are too many crossings.
+SCREE_FN bool scree_overlap_meet(scree_overlap_slice *slice, int32_t triangle_a, int32_t triangle_b)
+{
+    const scree_face *f = &slice->body[0].triangles[triangle_a].face;
+    const scree_face *g = &slice->body[1].triangles[triangle_b].face;
+    if (slice->sign_tolerance > 0)
+    {
+        scree_segment_end p, q;
+        const scree_meet_verdict verdict = scree_faces_meet(f, g, slice->sign_tolerance, &p, &q);
+        if (verdict == SCREE_MEET_APART) return true;
+        if (verdict == SCREE_MEET_SEGMENT) return scree_overlap_add_segment(slice, triangle_a, triangle_b, &p, &q);
+    }
+    return scree_overlap_meet_by_sides(slice, triangle_a, triangle_b);
+}
+
+/// All segments. False if there are too many.
+SCREE_FN bool scree_overlap_find_segments(scree_overlap_slice *slice)
 {
     const scree_overlap_body *a = slice->body;
-    scree_overlap_body *b = slice->body + 1;
-    for (int32_t g = 0; g < b->num_near_triangles; ++g) b->rows[g] = 0;
-    for (int32_t f = 0; f < a->num_near_triangles; ++f)
-        for (uint64_t row = a->rows[f]; row != 0; row &= row - 1) b->rows[scree_lowest_bit(row)] |= (uint64_t)1 << f;
-}
-
-/// Do the near triangles of both bodies fit into one block, so that all rows are known at once?
-SCREE_FN bool scree_overlap_is_one_block(const scree_overlap_slice *slice)
-{
-    return slice->body[0].num_near_triangles <= SCREE_INDEX_MAX && slice->body[1].num_near_triangles <= SCREE_INDEX_MAX;
+    const scree_overlap_body *b = slice->body + 1;
+    slice->num_crossings = 0;
+    slice->num_segments = 0;
+    slice->is_closed = true;
+    for (int32_t begin = 0; begin < b->num_triangles; begin += SCREE_INDEX_MAX)
+    {
+        const int32_t rest = b->num_triangles - begin;
+        const int32_t num = rest < SCREE_INDEX_MAX ? rest : SCREE_INDEX_MAX;
+        scree_box_index index;
+        scree_index_build(&index, b->triangle_boxes + begin, num, slice->common);
+        for (int32_t f = 0; f < a->num_triangles; ++f)
+        {
+            uint64_t candidates = scree_index_query(&index, a->triangle_boxes[f]);
+            for (; candidates != 0; candidates &= candidates - 1)
+            {
+                const int32_t g = begin + scree_lowest_bit(candidates);
+                if (num > SCREE_INDEX_DIRECT && !scree_box_overlaps(a->triangle_boxes[f], b->triangle_boxes[g]))
+                    continue;
+                if (!scree_overlap_meet(slice, f, g)) return false;
+            }
+        }
+    }
+    return true;
 }
 
 /// How often vertex v of body `side` lies inside the other: by the ray along -z from A, along +z from B.
-SCREE_FN int32_t scree_overlap_count_inside(const scree_overlap_slice *slice, int32_t side,
-                                            const scree_box_index *index, int32_t begin, scree_vec3 p)
+SCREE_FN int32_t scree_overlap_count_inside(const scree_overlap_slice *slice, int32_t side, scree_vec3 p)
 {
     const scree_overlap_body *other = slice->body + 1 - side;
-    scree_box ray;
-    ray.lower = p;
-    ray.upper = p;
-    if (side == 0) ray.lower.z = -SCREE_REAL_MAX;
-    else ray.upper.z = SCREE_REAL_MAX;
     int32_t count = 0;
-    for (uint64_t candidates = scree_index_query(index, ray); candidates != 0; candidates &= candidates - 1)
+    for (int32_t t = 0; t < other->num_triangles; ++t)
     {
-        const scree_face *g = &other->triangles[begin + scree_lowest_bit(candidates)].face;
+        const scree_box box = other->triangle_boxes[t];
+        if (p.x < box.lower.x || p.x > box.upper.x || p.y < box.lower.y || p.y > box.upper.y) continue;
+        const scree_face *g = &other->triangles[t].face;
         int32_t own = SCREE_SIGN_UNSURE;
         if (slice->sign_tolerance > 0) own = scree_vertex_sign(p, g, side == 0, slice->sign_tolerance);
         if (own == SCREE_SIGN_UNSURE) own = side == 0 ? scree_vertex_a_above(p, g) : -scree_vertex_b_below(p, g);
@@ -90,161 +201,96 @@ SCREE_FN int32_t scree_overlap_count_inside(const scree_overlap_slice *slice, in
     return count;
 }
 
-/// Counts of all vertices of body `side`. Those outside the region of the filter are outside the other body.
+/// Stands for an inside count that is not known yet.
+#define SCREE_INSIDE_UNKNOWN INT32_MIN
+
+/// Gathers the edges with an end that is not known yet; returns their number.
+SCREE_FN int32_t scree_overlap_find_links(const scree_overlap_slice *slice, scree_overlap_body *body)
+{
+    int32_t num = 0;
+    for (int32_t t = 0; t < body->num_triangles; ++t)
+    {
+        const scree_overlap_triangle *triangle = body->triangles + t;
+        for (int32_t k = 0; k < 3; ++k)
+        {
+            const int32_t v0 = triangle->v[k];
+            const int32_t v1 = triangle->v[k == 2 ? 0 : k + 1];
+            const bool is_known = body->inside[v0] != SCREE_INSIDE_UNKNOWN && body->inside[v1] != SCREE_INSIDE_UNKNOWN;
+            if (is_known || (triangle->face.reversed >> k & 1) != 0) continue;
+            scree_overlap_link *link = body->links + num++;
+            link->v[0] = v0;
+            link->v[1] = v1;
+            link->change = 0;
+            for (int32_t c = triangle->crossing[k]; c >= 0; c = slice->crossings[c].next)
+                link->change += slice->crossings[c].sign;
+        }
+    }
+    return num;
+}
+
+/// Goes over the links until each has told what it can; returns how many are left that join unknown ends only.
+SCREE_FN int32_t scree_overlap_follow_links(scree_overlap_slice *slice, scree_overlap_body *body, int32_t num)
+{
+    for (int32_t before = num + 1; num > 0 && num < before;)
+    {
+        before = num;
+        num = 0;
+        for (int32_t i = 0; i < before; ++i)
+        {
+            const scree_overlap_link link = body->links[i];
+            int32_t *inside0 = body->inside + link.v[0];
+            int32_t *inside1 = body->inside + link.v[1];
+            if (*inside0 != SCREE_INSIDE_UNKNOWN && *inside1 != SCREE_INSIDE_UNKNOWN)
+                slice->is_closed = slice->is_closed && *inside1 - *inside0 == link.change;
+            else if (*inside0 != SCREE_INSIDE_UNKNOWN) *inside1 = *inside0 + link.change;
+            else if (*inside1 != SCREE_INSIDE_UNKNOWN) *inside0 = *inside1 - link.change;
+            else body->links[num++] = link;
+        }
+    }
+    return num;
+}
+
+/// Inside counts of all vertices of body `side`. Those outside the region of the filter are outside the other body;
+/// from there the counts go along the edges, changed by their crossings. A piece of the body that has neither outside
+/// vertices nor crossings asks once, by a ray.
 SCREE_FN void scree_overlap_find_inside(scree_overlap_slice *slice, int32_t side)
 {
     scree_overlap_body *body = slice->body + side;
-    const scree_overlap_body *other = slice->body + 1 - side;
     const int32_t dropping = side == 0 ? SCREE_OUTSIDE_A : SCREE_OUTSIDE_B;
-    for (int32_t v = 0; v < body->num_vertices; ++v) body->inside[v] = 0;
-    for (int32_t begin = 0; begin < other->num_triangles; begin += SCREE_INDEX_MAX)
-    {
-        const int32_t rest = other->num_triangles - begin;
-        scree_box_index index;
-        scree_index_build(&index, other->triangle_boxes + begin, rest < SCREE_INDEX_MAX ? rest : SCREE_INDEX_MAX,
-                          slice->common);
-        for (int32_t v = 0; v < body->num_vertices; ++v)
-            if ((body->outcode[v] & dropping) == 0)
-                body->inside[v] += scree_overlap_count_inside(slice, side, &index, begin, body->points[v]);
-    }
     body->num_inside = 0;
-    for (int32_t v = 0; v < body->num_vertices; ++v) body->num_inside += body->inside[v] != 0;
-}
-
-/// Place of the neighbour across side k of a kept triangle, or -1 if the neighbour is not kept.
-SCREE_FN int32_t scree_kept_neighbour(const scree_overlap_body *body, const scree_shape_view *shape, int32_t t,
-                                      int32_t k)
-{
-    const int32_t id = shape->neighbours[3 * body->triangles[t].id + k];
-    const int32_t slot = body->triangle_slot[id];
-    return slot < body->num_triangles && body->triangles[slot].id == id ? slot : -1;
-}
-
-/// The edge between triangle t, along its side k, and its neighbour.
-SCREE_FN void scree_overlap_make_edge(scree_overlap_body *body, int32_t t, int32_t k, int32_t neighbour)
-{
-    const scree_overlap_triangle *triangle = body->triangles + t;
-    const int32_t next = k == 2 ? 0 : k + 1;
-    const bool is_reversed = ((triangle->face.reversed >> k) & 1) != 0;
-    scree_overlap_edge *edge = body->edges + body->num_edges;
-    edge->v[0] = triangle->v[is_reversed ? next : k];
-    edge->v[1] = triangle->v[is_reversed ? k : next];
-    edge->left = is_reversed ? neighbour : t;
-    edge->right = is_reversed ? t : neighbour;
-    edge->has_foot = false;
-    const scree_vec3 p = body->points[edge->v[0]];
-    const scree_vec3 q = body->points[edge->v[1]];
-    edge->line.p[0] = p;
-    edge->line.p[1] = q;
-    edge->size = scree_abs(q.x - p.x) + scree_abs(q.y - p.y) + scree_abs(q.z - p.z);
-    ++body->num_edges;
-}
-
-/// Makes the edges between kept triangles that may cross something or end inside; all of them if the rows do not tell.
-/// False if there are too many.
-SCREE_FN bool scree_overlap_make_edges(scree_overlap_slice *slice, int32_t side, const scree_shape_view *shape)
-{
-    scree_overlap_body *body = slice->body + side;
-    const bool has_rows = scree_overlap_is_one_block(slice);
-    body->num_edges = 0;
-    for (int32_t t = 0; t < body->num_triangles; ++t)
+    int32_t num_unknown = 0;
+    for (int32_t v = 0; v < body->num_vertices; ++v)
     {
-        const uint64_t row = !has_rows ? 1 : t < body->num_near_triangles ? body->rows[t] : 0;
-        if (row == 0 && body->num_inside == 0) continue;
-        for (int32_t k = 0; k < 3; ++k)
-        {
-            // each edge once, from the triangle of lower place
-            const int32_t neighbour = scree_kept_neighbour(body, shape, t, k);
-            if (neighbour < t) continue;
-            const scree_overlap_triangle *triangle = body->triangles + t;
-            const int32_t inside = body->inside[triangle->v[k]] | body->inside[triangle->v[k == 2 ? 0 : k + 1]];
-            const bool may_cross =
-                !has_rows || (neighbour < body->num_near_triangles && (row & body->rows[neighbour]) != 0);
-            if (inside == 0 && !may_cross) continue;
-            if (body->num_edges == body->max_edges) return false;
-            scree_overlap_make_edge(body, t, k, neighbour);
-        }
+        const bool is_outside = (body->outcode[v] & dropping) != 0;
+        body->inside[v] = is_outside ? 0 : SCREE_INSIDE_UNKNOWN;
+        num_unknown += !is_outside;
     }
-    return true;
-}
-
-/// Does edge e of body `side` cross triangle t of the other? The sign is x12 for A and x21 for B.
-SCREE_FN int32_t scree_overlap_decide(const scree_overlap_slice *slice, int32_t side, int32_t e, int32_t t,
-                                      scree_vec3 *point)
-{
-    const scree_overlap_edge *edge = slice->body[side].edges + e;
-    const scree_face *g = &slice->body[1 - side].triangles[t].face;
-    if (slice->sign_tolerance > 0)
+    if (num_unknown == 0) return;
+    int32_t num_links = scree_overlap_follow_links(slice, body, scree_overlap_find_links(slice, body));
+    while (num_links > 0)
     {
-        const scree_sign_verdict verdict = scree_edge_sign(&edge->line, edge->size, g, slice->sign_tolerance, point);
-        if (verdict != SCREE_SIGN_UNSURE) return side == 0 ? (int32_t)verdict : -(int32_t)verdict;
+        const int32_t v = body->links[0].v[0];
+        body->inside[v] = scree_overlap_count_inside(slice, side, body->points[v]);
+        num_links = scree_overlap_follow_links(slice, body, num_links);
     }
-    return side == 0 ? scree_edge_a_crosses(&edge->line, g, point) : scree_edge_b_crosses(g, &edge->line, point);
-}
-
-/// Crossings of edges of body `side` with triangles of one block of the other. False if there are too many.
-SCREE_FN bool scree_overlap_cross_block(scree_overlap_slice *slice, int32_t side, int32_t block)
-{
-    const scree_overlap_body *own = slice->body + side;
-    for (int32_t e = 0; e < own->num_edges; ++e)
+    for (int32_t v = 0; v < body->num_vertices; ++v)
     {
-        const scree_overlap_edge *edge = own->edges + e;
-        if (edge->left >= own->num_near_triangles || edge->right >= own->num_near_triangles) continue;
-        uint64_t candidates = own->rows[edge->left] & own->rows[edge->right];
-        for (; candidates != 0; candidates &= candidates - 1)
-        {
-            const int32_t t = SCREE_INDEX_MAX * block + scree_lowest_bit(candidates);
-            scree_vec3 point;
-            const int32_t sign = scree_overlap_decide(slice, side, e, t, &point);
-            if (sign == 0) continue;
-            if (slice->num_crossings == slice->max_crossings) return false;
-            scree_overlap_crossing *crossing = slice->crossings + slice->num_crossings++;
-            crossing->point = point;
-            crossing->edge = e;
-            crossing->triangle = t;
-            crossing->sign = sign;
-            crossing->is_of_b = side;
-        }
+        if (body->inside[v] == SCREE_INSIDE_UNKNOWN) body->inside[v] = 0;
+        body->num_inside += body->inside[v] != 0;
+        if (body->inside[v] < 0) slice->is_closed = false;
     }
-    return true;
 }
 
-/// All crossings of edges of body `side`. False if there are too many.
-SCREE_FN bool scree_overlap_find_crossings(scree_overlap_slice *slice, int32_t side)
-{
-    if (scree_overlap_is_one_block(slice)) return scree_overlap_cross_block(slice, side, 0);
-    const int32_t num_near = slice->body[1 - side].num_near_triangles;
-    for (int32_t block = 0; SCREE_INDEX_MAX * block < num_near; ++block)
-    {
-        scree_overlap_find_rows(slice, side, block);
-        if (!scree_overlap_cross_block(slice, side, block)) return false;
-    }
-    return true;
-}
-
-/// Crossings and inside counts of both bodies. False if there are too many; slice->lack tells of what.
+/// Segments, crossings and inside counts of both bodies. False if there are too many crossings.
 SCREE_FN bool scree_overlap_collect(scree_overlap_slice *slice, const scree_shape_view *const *shape)
 {
-    slice->num_crossings = 0;
-    if (scree_overlap_is_one_block(slice))
+    if (!scree_overlap_find_segments(slice))
     {
-        scree_overlap_find_rows(slice, 0, 0);
-        scree_overlap_transpose_rows(slice);
+        slice->lack = SCREE_LACK_CROSSINGS;
+        return false;
     }
-    for (int32_t side = 0; side < 2; ++side)
-    {
-        scree_overlap_find_inside(slice, side);
-        if (!scree_overlap_make_edges(slice, side, shape[side]))
-        {
-            slice->lack = SCREE_LACK_PIECES;
-            return false;
-        }
-        if (!scree_overlap_find_crossings(slice, side))
-        {
-            slice->lack = SCREE_LACK_CROSSINGS;
-            return false;
-        }
-    }
+    scree_overlap_tie_segments(slice, shape);
+    for (int32_t side = 0; side < 2; ++side) scree_overlap_find_inside(slice, side);
     return true;
 }
 

@@ -23,6 +23,7 @@ typedef struct scree_face
 {
     scree_vec3 p[3];
     scree_vec3 normal; ///< outward, length twice the area; for the signs
+    scree_real offset; ///< normal . p of the plane
     scree_real size;   ///< bound from above on the length of the sides; for the signs
     int32_t reversed;
 } scree_face;

@@ -121,6 +121,7 @@ SCREE_FN bool scree_overlap_half_spaces(scree_overlap_slice *slice, const scree_
         const scree_real reach = scree_overlap_load(slice->body + other, setup->posed + other, region[side].direction);
         region[side].reach = reach + rounding;
     }
+    slice->tolerance = SCREE_SIGN_MARGIN * SCREE_REAL_EPSILON * size;
     return region[0].reach + region[1].reach >= 0;
 }
 
@@ -136,7 +137,7 @@ SCREE_FN bool scree_overlap_keep(scree_overlap_slice *slice, int32_t side, const
         slice->lack = SCREE_LACK_PIECES;
         return false;
     }
-    scree_filter_kept_box(body);
+    scree_filter_clip(body, region, slice->tolerance);
     return body->num_triangles > 0;
 }
 
@@ -156,17 +157,15 @@ SCREE_FN bool scree_overlap_filter(scree_overlap_slice *slice, const scree_overl
     region[1].box = slice->body[0].box;
     scree_filter_again(slice->body + 1, region + 1);
     if (slice->body[1].num_triangles == 0) return false;
-    scree_filter_kept_box(slice->body + 1);
     return true;
 }
 
 /// Triangles ready for the tests of a scheme.
 SCREE_FN void scree_overlap_prepare(scree_overlap_slice *slice, scree_overlap_scheme scheme)
 {
+    slice->sign_tolerance = scheme == SCREE_OVERLAP_FILTERED ? slice->tolerance : 0;
     const scree_box a = slice->body[0].box;
     const scree_box b = slice->body[1].box;
-    const scree_real size = scree_max(scree_box_reach(a), scree_box_reach(b));
-    slice->sign_tolerance = scheme == SCREE_OVERLAP_FILTERED ? SCREE_SIGN_MARGIN * SCREE_REAL_EPSILON * size : 0;
     slice->common.lower = scree_vec3_max(a.lower, b.lower);
     slice->common.upper = scree_vec3_min(a.upper, b.upper);
     for (int32_t side = 0; side < 2; ++side) scree_filter_finish(slice->body + side);
@@ -250,8 +249,9 @@ SCREE_FN scree_overlap_result scree_overlap_pair_compute(const scree_overlap_pai
     {
         scree_overlap_prepare(slice, scheme);
         if (!scree_overlap_collect(slice, pair->shape)) return scree_overlap_nothing(SCREE_OVERLAP_WORKSPACE_FULL);
-        const bool is_closed = scree_overlap_sum(slice, &sums);
-        if (scheme == SCREE_OVERLAP_HIERARCHY || (is_closed && sums.residual <= SCREE_RESIDUAL_LIMIT)) break;
+        slice->num_patches = 1;
+        scree_overlap_sum(slice, pair->shape, 0, &sums);
+        if (scheme == SCREE_OVERLAP_HIERARCHY || (slice->is_closed && sums.residual <= SCREE_RESIDUAL_LIMIT)) break;
         scheme = SCREE_OVERLAP_HIERARCHY;
         used_fallback = true;
     }

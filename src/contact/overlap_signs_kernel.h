@@ -22,7 +22,7 @@ typedef enum scree_sign_verdict
 /// Height of a point over the plane of a face, times twice the face's area.
 SCREE_FN scree_real scree_face_height(const scree_face *face, scree_vec3 p)
 {
-    return scree_vec3_dot(face->normal, scree_vec3_sub(p, face->p[0]));
+    return scree_vec3_dot(face->normal, p) - face->offset;
 }
 
 /// Six times the volume of the tetrahedron of a line and side p q of a face: > 0 for all three sides if the line goes

@@ -1,13 +1,13 @@
 /// \file overlap_sums_kernel.h
-/// Second pass of an overlap: segments where triangles meet, and the sums over crossings, segments and inside vertices
-/// about the middle C of the contact. Everything is relative to C. Franklin & Kankanhalli (1993), "Volumes from
-/// overlaying 3-D triangulations in parallel": each term is the signed tetrahedron (C, foot on the plane, foot on the
-/// edge, point). Departure: where two triangles meet the two ends are taken together, as the segment p to q, which
-/// stays accurate when the triangles are nearly parallel.
-///     6 V = sum over edges (q_left - q_right) . (r x sum of +-x)  +  sum over segments (q_f - q_g) . (p x q)
-///     2 S = sum over segments p x q
-///     24 M = sum over the same terms, each times (q + r + x) or (q + p + q')
-/// x: crossings and inside vertices, + where the edge's part inside the other body ends there, - where it starts.
+/// Second pass of an overlap: sums over the edges of the overlap solid about the middle C of the contact. Its edges are
+/// the segments in which triangles of A and B meet, and the intervals of edges of one body inside the other. Each edge,
+/// from x to y, has a face of the solid on its left and one on its right, whose planes have the feet q of C:
+///     6 V = sum over edges (q_left - q_right) . (x cross y)
+///     2 S = sum over segments x cross y
+///     24 M = sum over edges and both of their faces q . (x cross y) (q + x + y)
+/// Each term is a tetrahedron (C, q, x, y), signed; everything is relative to C. The cusps of Franklin & Kankanhalli
+/// (1993), "Volumes from overlaying 3-D triangulations in parallel", are these terms split at the foot of C on the
+/// edge; taken whole they stay accurate where the two faces are nearly parallel, and need no foot on edges.
 #ifndef SCREE_OVERLAP_SUMS_KERNEL_H
 #define SCREE_OVERLAP_SUMS_KERNEL_H
 
@@ -40,18 +40,6 @@ SCREE_FN scree_vec3 scree_segment_foot(scree_vec3 p0, scree_vec3 p1)
     if (!(along1 > 0)) return p1;
     if (along0 <= along1) return scree_vec3_add_scaled(p0, u, along0 / length2);
     return scree_vec3_add_scaled(p1, u, -(along1 / length2));
-}
-
-/// Foot of C on an edge, computed once.
-SCREE_FN scree_vec3 scree_overlap_edge_foot(scree_overlap_edge *edge, scree_vec3 middle)
-{
-    if (!edge->has_foot)
-    {
-        edge->foot =
-            scree_segment_foot(scree_vec3_sub(edge->line.p[0], middle), scree_vec3_sub(edge->line.p[1], middle));
-        edge->has_foot = true;
-    }
-    return edge->foot;
 }
 
 /// Point of the triangle's sides nearest to C.
@@ -90,18 +78,30 @@ SCREE_FN scree_vec3 scree_overlap_plane_foot(scree_overlap_triangle *triangle, s
     return triangle->foot;
 }
 
-/// Box of all crossings and inside vertices.
-SCREE_FN scree_box scree_overlap_points_box(const scree_overlap_slice *slice)
+/// Gathers the corners of the overlap solid, or of one patch of it: crossings and inside vertices. Returns their box.
+SCREE_FN scree_box scree_overlap_gather_corners(scree_overlap_slice *slice, int32_t patch)
 {
+    const bool is_one = slice->num_patches == 1;
     scree_box box = scree_box_empty();
-    for (int32_t c = 0; c < slice->num_crossings; ++c) box = scree_box_with_point(box, slice->crossings[c].point);
+    int32_t num = 0;
+    for (int32_t c = 0; c < slice->num_crossings; ++c)
+    {
+        if (!is_one && slice->crossings[c].patch != patch) continue;
+        slice->corners[num++] = slice->crossings[c].point;
+        box = scree_box_with_point(box, slice->crossings[c].point);
+    }
     for (int32_t side = 0; side < 2; ++side)
     {
         const scree_overlap_body *body = slice->body + side;
         if (body->num_inside == 0) continue;
         for (int32_t v = 0; v < body->num_vertices; ++v)
-            if (body->inside[v] != 0) box = scree_box_with_point(box, body->points[v]);
+        {
+            if (body->inside[v] == 0 || (!is_one && body->patch[v] != patch)) continue;
+            slice->corners[num++] = body->points[v];
+            box = scree_box_with_point(box, body->points[v]);
+        }
     }
+    slice->num_corners = num;
     return box;
 }
 
@@ -114,145 +114,65 @@ SCREE_FN void scree_overlap_add_volume(scree_overlap_sums *sums, scree_real term
     sums->six_volume = sum;
 }
 
-/// One point of an edge: the end (sign > 0) or the start of a part inside the other body. x is relative to C.
-SCREE_FN void scree_overlap_add_point(scree_overlap_body *body, int32_t e, scree_vec3 x, scree_real sign,
-                                      scree_overlap_sums *sums)
+/// One edge of the solid, x to y relative to C, with the faces on its left and right.
+SCREE_FN void scree_overlap_add_edge(scree_overlap_sums *sums, scree_vec3 x, scree_vec3 y, scree_overlap_triangle *left,
+                                     scree_overlap_triangle *right, scree_vec3 twice_area)
 {
-    scree_overlap_edge *edge = body->edges + e;
-    scree_overlap_triangle *left = body->triangles + edge->left;
-    scree_overlap_triangle *right = body->triangles + edge->right;
-    const scree_vec3 r = scree_overlap_edge_foot(edge, sums->middle);
     const scree_vec3 q_left = scree_overlap_plane_foot(left, sums->middle);
     const scree_vec3 q_right = scree_overlap_plane_foot(right, sums->middle);
-    const scree_vec3 twice_area = scree_vec3_scale(scree_vec3_cross(r, x), sign);
     const scree_real term = scree_vec3_dot(scree_vec3_sub(q_left, q_right), twice_area);
     scree_overlap_add_volume(sums, term);
-    sums->moment = scree_vec3_add_scaled(sums->moment, scree_vec3_add(r, x), term);
+    sums->moment = scree_vec3_add_scaled(sums->moment, scree_vec3_add(x, y), term);
     left->boundary = scree_vec3_add(left->boundary, twice_area);
     right->boundary = scree_vec3_sub(right->boundary, twice_area);
 }
 
-/// All points of all edges.
-SCREE_FN void scree_overlap_sum_edges(scree_overlap_slice *slice, scree_overlap_sums *sums)
-{
-    for (int32_t c = 0; c < slice->num_crossings; ++c)
-    {
-        const scree_overlap_crossing *crossing = slice->crossings + c;
-        const scree_real sign = (scree_real)(crossing->is_of_b ? crossing->sign : -crossing->sign);
-        scree_overlap_add_point(slice->body + crossing->is_of_b, crossing->edge,
-                                scree_vec3_sub(crossing->point, sums->middle), sign, sums);
-    }
-    for (int32_t side = 0; side < 2; ++side)
-    {
-        scree_overlap_body *body = slice->body + side;
-        if (body->num_inside == 0) continue;
-        for (int32_t e = 0; e < body->num_edges; ++e)
-        {
-            for (int32_t end = 0; end < 2; ++end)
-            {
-                const int32_t v = body->edges[e].v[end];
-                const int32_t inside = end == 0 ? -body->inside[v] : body->inside[v];
-                if (inside == 0) continue;
-                scree_overlap_add_point(body, e, scree_vec3_sub(body->points[v], sums->middle), (scree_real)inside,
-                                        sums);
-            }
-        }
-    }
-}
-
-/// Size of the table for the crossings there are: a power of two at least four times their number.
-SCREE_FN int32_t scree_overlap_table_size(int32_t num_crossings)
-{
-    int32_t size = 16;
-    while (size < 4 * num_crossings) size *= 2;
-    return size;
-}
-
-/// First segment of a pair of triangles, or where to enter it: the place in the table.
-SCREE_FN int32_t scree_overlap_find_slot(const scree_overlap_slice *slice, int32_t size, int32_t triangle_a,
-                                         int32_t triangle_b)
-{
-    const uint32_t hash = (uint32_t)triangle_a * 0x9e3779b1u ^ (uint32_t)triangle_b * 0x85ebca77u;
-    int32_t slot = (int32_t)((hash >> 8) & (uint32_t)(size - 1));
-    for (;;)
-    {
-        const int32_t s = slice->table[slot];
-        if (s < 0) return slot;
-        if (slice->segments[s].triangle_a == triangle_a && slice->segments[s].triangle_b == triangle_b) return slot;
-        slot = (slot + 1) & (size - 1);
-    }
-}
-
-/// Enters crossing c as an end (is_end) or a start of a segment of the pair of triangles in `slot`.
-SCREE_FN void scree_overlap_join(scree_overlap_slice *slice, int32_t slot, int32_t c, bool is_end)
-{
-    int32_t s = slice->table[slot];
-    while (s >= 0)
-    {
-        scree_overlap_segment *segment = slice->segments + s;
-        int32_t *open = is_end ? &segment->q : &segment->p;
-        if (*open < 0)
-        {
-            *open = c;
-            return;
-        }
-        s = segment->next;
-    }
-    scree_overlap_segment *added = slice->segments + slice->num_segments;
-    added->p = is_end ? -1 : c;
-    added->q = is_end ? c : -1;
-    added->next = slice->table[slot];
-    slice->table[slot] = slice->num_segments++;
-}
-
-/// Pairs the crossings of each two triangles into segments: counted +1 in the triangle of A is an end, -1 a start.
-/// False if one stays alone, which cannot be unless two decisions disagreed.
-SCREE_FN bool scree_overlap_make_segments(scree_overlap_slice *slice)
-{
-    const int32_t size = scree_overlap_table_size(slice->num_crossings);
-    for (int32_t i = 0; i < size; ++i) slice->table[i] = -1;
-    slice->num_segments = 0;
-    for (int32_t c = 0; c < slice->num_crossings; ++c)
-    {
-        const scree_overlap_crossing *crossing = slice->crossings + c;
-        const scree_overlap_edge *edge = slice->body[crossing->is_of_b].edges + crossing->edge;
-        for (int32_t turn = 0; turn < 2; ++turn)
-        {
-            const int32_t own = turn == 0 ? edge->left : edge->right;
-            const int32_t triangle_a = crossing->is_of_b ? crossing->triangle : own;
-            const int32_t triangle_b = crossing->is_of_b ? own : crossing->triangle;
-            const int32_t slot = scree_overlap_find_slot(slice, size, triangle_a, triangle_b);
-            const int32_t num_before = slice->num_segments;
-            scree_overlap_join(slice, slot, c, (turn == 0) == (crossing->sign > 0));
-            if (slice->num_segments == num_before) continue;
-            slice->segments[num_before].triangle_a = triangle_a;
-            slice->segments[num_before].triangle_b = triangle_b;
-        }
-    }
-    for (int32_t s = 0; s < slice->num_segments; ++s)
-        if (slice->segments[s].p < 0 || slice->segments[s].q < 0) return false;
-    return true;
-}
-
-SCREE_FN void scree_overlap_sum_segments(scree_overlap_slice *slice, scree_overlap_sums *sums)
+/// Segments: edges of the solid between a face of A and a face of B.
+SCREE_FN void scree_overlap_sum_segments(scree_overlap_slice *slice, int32_t patch, scree_overlap_sums *sums)
 {
     for (int32_t s = 0; s < slice->num_segments; ++s)
     {
         const scree_overlap_segment *segment = slice->segments + s;
-        if (segment->p < 0 || segment->q < 0) continue;
-        const scree_vec3 p = scree_vec3_sub(slice->crossings[segment->p].point, sums->middle);
-        const scree_vec3 q = scree_vec3_sub(slice->crossings[segment->q].point, sums->middle);
-        scree_overlap_triangle *f = slice->body[0].triangles + segment->triangle_a;
-        scree_overlap_triangle *g = slice->body[1].triangles + segment->triangle_b;
-        const scree_vec3 foot_f = scree_overlap_plane_foot(f, sums->middle);
-        const scree_vec3 foot_g = scree_overlap_plane_foot(g, sums->middle);
+        if (segment->end[0] < 0 || segment->end[1] < 0) continue;
+        const scree_overlap_crossing *start = slice->crossings + segment->end[0];
+        if (slice->num_patches > 1 && start->patch != patch) continue;
+        const scree_vec3 p = scree_vec3_sub(start->point, sums->middle);
+        const scree_vec3 q = scree_vec3_sub(slice->crossings[segment->end[1]].point, sums->middle);
         const scree_vec3 twice_area = scree_vec3_cross(p, q);
-        const scree_real term = scree_vec3_dot(scree_vec3_sub(foot_f, foot_g), twice_area);
-        scree_overlap_add_volume(sums, term);
-        sums->moment = scree_vec3_add_scaled(sums->moment, scree_vec3_add(p, q), term);
         sums->area_vector = scree_vec3_add(sums->area_vector, twice_area);
-        f->boundary = scree_vec3_add(f->boundary, twice_area);
-        g->boundary = scree_vec3_sub(g->boundary, twice_area);
+        scree_overlap_add_edge(sums, p, q, slice->body[0].triangles + segment->triangle_a,
+                               slice->body[1].triangles + segment->triangle_b, twice_area);
+    }
+}
+
+/// Intervals: edges of the solid between two faces of the same body.
+SCREE_FN void scree_overlap_sum_intervals(scree_overlap_slice *slice, int32_t side, const scree_shape_view *shape,
+                                          int32_t patch, scree_overlap_sums *sums)
+{
+    scree_overlap_body *body = slice->body + side;
+    for (int32_t t = 0; t < body->num_triangles; ++t)
+    {
+        for (int32_t k = 0; k < 3; ++k)
+        {
+            scree_interval_walk walk;
+            if (!scree_overlap_edge_is_inside(body, t, k)) continue;
+            const int32_t right = scree_kept_neighbour(body, shape, t, k);
+            if (right < 0)
+            {
+                slice->is_closed = false;
+                continue;
+            }
+            scree_interval_walk_start(body, t, k, &walk);
+            scree_overlap_interval interval;
+            while (scree_overlap_next_interval(slice, body, &walk, &interval))
+            {
+                if (slice->num_patches > 1 && *scree_overlap_patch_of(slice, interval.corner[0]) != patch) continue;
+                const scree_vec3 x = scree_vec3_sub(interval.point[0], sums->middle);
+                const scree_vec3 y = scree_vec3_sub(interval.point[1], sums->middle);
+                scree_overlap_add_edge(sums, x, y, body->triangles + t, body->triangles + right,
+                                       scree_vec3_cross(x, y));
+            }
+        }
     }
 }
 
@@ -282,10 +202,11 @@ SCREE_FN void scree_overlap_sum_faces(scree_overlap_slice *slice, scree_overlap_
     sums->residual = twice_area > 0 ? scree_vec3_length(twice_sum) / twice_area : 0;
 }
 
-/// All sums. False if the crossings do not close.
-SCREE_FN bool scree_overlap_sum(scree_overlap_slice *slice, scree_overlap_sums *sums)
+/// All sums of a patch; slice->is_closed is cleared if edges of the solid are missing.
+SCREE_FN void scree_overlap_sum(scree_overlap_slice *slice, const scree_shape_view *const *shape, int32_t patch,
+                                scree_overlap_sums *sums)
 {
-    sums->box = scree_overlap_points_box(slice);
+    sums->box = scree_overlap_gather_corners(slice, patch);
     sums->six_volume = 0;
     sums->lost = 0;
     sums->moment = scree_vec3_zero();
@@ -293,61 +214,36 @@ SCREE_FN bool scree_overlap_sum(scree_overlap_slice *slice, scree_overlap_sums *
     sums->residual = 0;
     sums->area = 0;
     sums->middle = scree_vec3_zero();
-    if (sums->box.lower.x > sums->box.upper.x) return true;
+    if (sums->box.lower.x > sums->box.upper.x) return;
     sums->middle = scree_vec3_scale(scree_vec3_add(sums->box.lower, sums->box.upper), (scree_real)0.5);
-    const bool is_closed = scree_overlap_make_segments(slice);
-    scree_overlap_sum_edges(slice, sums);
-    scree_overlap_sum_segments(slice, sums);
+    scree_overlap_sum_segments(slice, patch, sums);
+    for (int32_t side = 0; side < 2; ++side) scree_overlap_sum_intervals(slice, side, shape[side], patch, sums);
     scree_overlap_sum_faces(slice, sums);
     sums->six_volume += sums->lost;
-    return is_closed;
 }
 
-/// Extent of the collected points along n.
+/// Extent of the gathered corners along n.
 SCREE_FN scree_real scree_overlap_extent_along(const scree_overlap_slice *slice, scree_vec3 middle, scree_vec3 n)
 {
     scree_real least = SCREE_REAL_MAX;
     scree_real most = -SCREE_REAL_MAX;
-    for (int32_t c = 0; c < slice->num_crossings; ++c)
+    for (int32_t c = 0; c < slice->num_corners; ++c)
     {
-        const scree_real along = scree_vec3_dot(n, scree_vec3_sub(slice->crossings[c].point, middle));
+        const scree_real along = scree_vec3_dot(n, scree_vec3_sub(slice->corners[c], middle));
         least = scree_min(least, along);
         most = scree_max(most, along);
-    }
-    for (int32_t side = 0; side < 2; ++side)
-    {
-        const scree_overlap_body *body = slice->body + side;
-        if (body->num_inside == 0) continue;
-        for (int32_t v = 0; v < body->num_vertices; ++v)
-        {
-            if (body->inside[v] == 0) continue;
-            const scree_real along = scree_vec3_dot(n, scree_vec3_sub(body->points[v], middle));
-            least = scree_min(least, along);
-            most = scree_max(most, along);
-        }
     }
     return most > least ? most - least : 0;
 }
 
-/// Largest distance of a point of the overlap from `centre`, measured across n.
+/// Largest distance of a gathered corner from `centre`, measured across n.
 SCREE_FN scree_real scree_overlap_radius_about(const scree_overlap_slice *slice, scree_vec3 centre, scree_vec3 n)
 {
     scree_real largest = 0;
-    for (int32_t c = 0; c < slice->num_crossings; ++c)
+    for (int32_t c = 0; c < slice->num_corners; ++c)
     {
-        const scree_vec3 across = scree_vec3_cross(n, scree_vec3_sub(slice->crossings[c].point, centre));
+        const scree_vec3 across = scree_vec3_cross(n, scree_vec3_sub(slice->corners[c], centre));
         largest = scree_max(largest, scree_vec3_dot(across, across));
-    }
-    for (int32_t side = 0; side < 2; ++side)
-    {
-        const scree_overlap_body *body = slice->body + side;
-        if (body->num_inside == 0) continue;
-        for (int32_t v = 0; v < body->num_vertices; ++v)
-        {
-            if (body->inside[v] == 0) continue;
-            const scree_vec3 across = scree_vec3_cross(n, scree_vec3_sub(body->points[v], centre));
-            largest = scree_max(largest, scree_vec3_dot(across, across));
-        }
     }
     return scree_sqrt(largest);
 }

@@ -23,8 +23,6 @@ enum
     SCREE_OUTSIDE_BELOW = 16,  ///< drops triangles of A only
     SCREE_OUTSIDE_ABOVE = 32,  ///< drops triangles of B only
     SCREE_OUTSIDE_BEYOND = 64, ///< of the half-space
-    SCREE_OUTSIDE_CODED = 128, ///< all sides are known; else only SCREE_OUTSIDE_BEYOND, which is set then
-    SCREE_OUTSIDE_ANY = 127,
     SCREE_OUTSIDE_A = SCREE_OUTSIDE_X | SCREE_OUTSIDE_Y | SCREE_OUTSIDE_BELOW | SCREE_OUTSIDE_BEYOND,
     SCREE_OUTSIDE_B = SCREE_OUTSIDE_X | SCREE_OUTSIDE_Y | SCREE_OUTSIDE_ABOVE | SCREE_OUTSIDE_BEYOND
 };
@@ -59,15 +57,15 @@ SCREE_FN scree_vec3 scree_posed_vertex(const scree_posed_shape *posed, int32_t v
     return scree_affine(&posed->rows, posed->shape->vertices[v], posed->offset);
 }
 
-SCREE_FN int32_t scree_filter_outcode(const scree_filter_region *region, scree_vec3 p)
+/// Sides of the region on which a vertex is outside, and its depth in the half-space.
+SCREE_FN int32_t scree_filter_outcode(const scree_filter_region *region, scree_vec3 p, scree_real *depth)
 {
     const scree_vec3 lower = region->box.lower;
     const scree_vec3 upper = region->box.upper;
-    const scree_vec3 d = region->direction;
-    const int32_t beyond = d.x * p.x + d.y * p.y + d.z * p.z > region->reach;
-    return SCREE_OUTSIDE_CODED | (int32_t)(p.x < lower.x) | (int32_t)(p.x > upper.x) << 1 |
-           (int32_t)(p.y < lower.y) << 2 | (int32_t)(p.y > upper.y) << 3 | (int32_t)(p.z < lower.z) << 4 |
-           (int32_t)(p.z > upper.z) << 5 | beyond << 6;
+    *depth = region->reach - scree_vec3_dot(region->direction, p);
+    return (int32_t)(p.x < lower.x) | (int32_t)(p.x > upper.x) << 1 | (int32_t)(p.y < lower.y) << 2 |
+           (int32_t)(p.y > upper.y) << 3 | (int32_t)(p.z < lower.z) << 4 | (int32_t)(p.z > upper.z) << 5 |
+           (int32_t)(*depth < 0) << 6;
 }
 
 /// All vertices into the working frame, in the order of the shape. Returns the largest direction . v.
@@ -81,46 +79,46 @@ SCREE_FN scree_real scree_filter_load_all(scree_overlap_body *body, const scree_
         const scree_vec3 p = scree_posed_vertex(posed, v);
         body->points[v] = p;
         body->vertex_id[v] = v;
-        const scree_real along = scree_vec3_dot(direction, p);
-        body->along[v] = along;
-        most = scree_max(most, along);
+        most = scree_max(most, scree_vec3_dot(direction, p));
     }
     body->num_vertices = num;
     return most;
 }
 
+/// Does a box miss the region? Asked of the sides that drop.
+SCREE_FN bool scree_filter_box_is_outside(const scree_filter_region *region, const scree_box *box)
+{
+    const scree_vec3 lower = region->box.lower;
+    const scree_vec3 upper = region->box.upper;
+    const int32_t outside = (int32_t)(box->upper.x < lower.x) | (int32_t)(box->lower.x > upper.x) << 1 |
+                            (int32_t)(box->upper.y < lower.y) << 2 | (int32_t)(box->lower.y > upper.y) << 3 |
+                            (int32_t)(box->upper.z < lower.z) << 4 | (int32_t)(box->lower.z > upper.z) << 5;
+    return (outside & region->dropping) != 0;
+}
+
 /// Sides on which all three corners are outside.
 SCREE_FN int32_t scree_filter_common_sides(const scree_overlap_body *body, const int32_t *v)
 {
-    return body->outcode[v[0]] & body->outcode[v[1]] & body->outcode[v[2]] & SCREE_OUTSIDE_ANY;
-}
-
-/// Box of a triangle.
-SCREE_FN scree_box scree_filter_box(const scree_overlap_body *body, const int32_t *v)
-{
-    const scree_vec3 p0 = body->points[v[0]];
-    const scree_vec3 p1 = body->points[v[1]];
-    const scree_vec3 p2 = body->points[v[2]];
-    scree_box box;
-    box.lower = scree_vec3_min(scree_vec3_min(p0, p1), p2);
-    box.upper = scree_vec3_max(scree_vec3_max(p0, p1), p2);
-    return box;
+    return body->outcode[v[0]] & body->outcode[v[1]] & body->outcode[v[2]];
 }
 
 /// Keeps triangles of a loaded body.
 SCREE_FN void scree_filter_all(scree_overlap_body *body, const scree_shape_view *shape,
                                const scree_filter_region *region)
 {
-    for (int32_t v = 0; v < body->num_vertices; ++v) body->outcode[v] = scree_filter_outcode(region, body->points[v]);
+    for (int32_t v = 0; v < body->num_vertices; ++v)
+        body->outcode[v] = scree_filter_outcode(region, body->points[v], body->depth + v);
     int32_t num = 0;
     for (int32_t id = 0; id < shape->num_triangles; ++id)
     {
+        // written first and kept or not: no branch that cannot be foreseen
         const int32_t *v = shape->triangles[id].v;
-        if ((scree_filter_common_sides(body, v) & region->dropping) != 0) continue;
-        scree_kept_triangle *kept = body->kept + num++;
-        for (int32_t k = 0; k < 3; ++k) kept->v[k] = v[k];
+        scree_kept_triangle *kept = body->kept + num;
+        kept->v[0] = v[0];
+        kept->v[1] = v[1];
+        kept->v[2] = v[2];
         kept->id = id;
-        kept->box = scree_filter_box(body, v);
+        num += (scree_filter_common_sides(body, v) & region->dropping) == 0;
     }
     body->num_triangles = num;
 }
@@ -134,7 +132,7 @@ SCREE_FN int32_t scree_filter_vertex(scree_overlap_body *body, const scree_posed
     if (slot < body->num_vertices && body->vertex_id[slot] == v) return slot;
     const int32_t added = body->num_vertices++;
     body->points[added] = scree_posed_vertex(posed, v);
-    body->outcode[added] = scree_filter_outcode(region, body->points[added]);
+    body->outcode[added] = scree_filter_outcode(region, body->points[added], body->depth + added);
     body->vertex_id[added] = v;
     body->vertex_slot[v] = added;
     return added;
@@ -214,32 +212,71 @@ SCREE_FN bool scree_filter_tree(scree_overlap_body *body, const scree_posed_shap
             kept->v[c] = scree_filter_vertex(body, posed, region, posed->shape->triangles[kept->id].v[c]);
         k = node->escape;
         if ((scree_filter_common_sides(body, kept->v) & region->dropping) != 0) continue;
-        kept->box = scree_filter_box(body, kept->v);
         ++body->num_triangles;
     }
     return true;
 }
 
-/// Drops kept triangles that do not reach into a smaller region, and codes the vertices for it.
-SCREE_FN void scree_filter_again(scree_overlap_body *body, const scree_filter_region *region)
+/// Box of the part of a triangle within the half-space, which at least one of its corners reaches.
+SCREE_FN scree_box scree_filter_clipped_box(const scree_overlap_body *body, const int32_t *v)
 {
-    for (int32_t v = 0; v < body->num_vertices; ++v) body->outcode[v] = scree_filter_outcode(region, body->points[v]);
+    const int32_t outs = (int32_t)(body->depth[v[0]] < 0) | (int32_t)(body->depth[v[1]] < 0) << 1 |
+                         (int32_t)(body->depth[v[2]] < 0) << 2;
+    scree_box box = scree_box_empty();
+    for (int32_t k = 0; k < 3; ++k)
+        if ((outs >> k & 1) == 0) box = scree_box_with_point(box, body->points[v[k]]);
+    if (outs == 0) return box;
+    // the corner alone on its side, and the two places where the sides from there leave the half-space
+    const int32_t lone = 0x690 >> (2 * outs) & 3;
+    for (int32_t turn = 1; turn < 3; ++turn)
+    {
+        const int32_t other = lone + turn < 3 ? lone + turn : lone + turn - 3;
+        const scree_real depth = body->depth[v[lone]];
+        const scree_real part = depth / (depth - body->depth[v[other]]);
+        const scree_vec3 start = body->points[v[lone]];
+        box = scree_box_with_point(box,
+                                   scree_vec3_add_scaled(start, scree_vec3_sub(body->points[v[other]], start), part));
+    }
+    return box;
+}
+
+/// Boxes of the kept triangles, clipped to the half-space; drops those that do not reach into the region with it.
+SCREE_FN void scree_filter_clip(scree_overlap_body *body, const scree_filter_region *region, scree_real margin)
+{
+    scree_box all = scree_box_empty();
     int32_t num = 0;
     for (int32_t t = 0; t < body->num_triangles; ++t)
     {
-        if ((scree_filter_common_sides(body, body->kept[t].v) & region->dropping) != 0) continue;
-        if (num < t) body->kept[num] = body->kept[t];
-        ++num;
+        const scree_kept_triangle kept = body->kept[t];
+        scree_box box = scree_filter_clipped_box(body, kept.v);
+        box.lower = scree_vec3_make(box.lower.x - margin, box.lower.y - margin, box.lower.z - margin);
+        box.upper = scree_vec3_make(box.upper.x + margin, box.upper.y + margin, box.upper.z + margin);
+        if (scree_filter_box_is_outside(region, &box)) continue;
+        body->kept[num] = kept;
+        body->triangle_boxes[num++] = box;
+        all = scree_box_union(all, box);
     }
     body->num_triangles = num;
+    body->box = all;
 }
 
-/// Box of all kept triangles, from the box of each.
-SCREE_FN void scree_filter_kept_box(scree_overlap_body *body)
+/// Codes the vertices for a smaller region, with the same half-space, and drops triangles that do not reach into it.
+SCREE_FN void scree_filter_again(scree_overlap_body *body, const scree_filter_region *region)
 {
-    scree_box box = scree_box_empty();
-    for (int32_t t = 0; t < body->num_triangles; ++t) box = scree_box_union(box, body->kept[t].box);
-    body->box = box;
+    for (int32_t v = 0; v < body->num_vertices; ++v)
+        body->outcode[v] = scree_filter_outcode(region, body->points[v], body->depth + v);
+    scree_box all = scree_box_empty();
+    int32_t num = 0;
+    for (int32_t t = 0; t < body->num_triangles; ++t)
+    {
+        const scree_box box = body->triangle_boxes[t];
+        if (scree_filter_box_is_outside(region, &box)) continue;
+        body->kept[num] = body->kept[t];
+        body->triangle_boxes[num++] = box;
+        all = scree_box_union(all, box);
+    }
+    body->num_triangles = num;
+    body->box = all;
 }
 
 /// Room for this shape? Sets slice->lack if not.
@@ -255,43 +292,37 @@ SCREE_FN bool scree_filter_has_room(scree_overlap_slice *slice, int32_t side, co
     return slice->lack == SCREE_LACK_NOTHING;
 }
 
-/// What is derived from the corners of kept triangle `from`, written as triangle t.
-SCREE_FN void scree_filter_finish_triangle(scree_overlap_body *body, int32_t from, int32_t t)
-{
-    const scree_kept_triangle *kept = body->kept + from;
-    scree_overlap_triangle *triangle = body->triangles + t;
-    const scree_vec3 p0 = body->points[kept->v[0]];
-    const scree_vec3 p1 = body->points[kept->v[1]];
-    const scree_vec3 p2 = body->points[kept->v[2]];
-    triangle->id = kept->id;
-    triangle->v[0] = kept->v[0];
-    triangle->v[1] = kept->v[1];
-    triangle->v[2] = kept->v[2];
-    triangle->has_foot = false;
-    triangle->face.p[0] = p0;
-    triangle->face.p[1] = p1;
-    triangle->face.p[2] = p2;
-    triangle->face.normal = scree_vec3_cross(scree_vec3_sub(p1, p0), scree_vec3_sub(p2, p0));
-    const int32_t id0 = body->vertex_id[kept->v[0]];
-    const int32_t id1 = body->vertex_id[kept->v[1]];
-    const int32_t id2 = body->vertex_id[kept->v[2]];
-    triangle->face.reversed = (int32_t)(id0 > id1) | (int32_t)(id1 > id2) << 1 | (int32_t)(id2 > id0) << 2;
-    const scree_box box = kept->box;
-    triangle->face.size = box.upper.x - box.lower.x + (box.upper.y - box.lower.y) + (box.upper.z - box.lower.z);
-    body->triangle_boxes[t] = box;
-    body->triangle_slot[kept->id] = t;
-}
-
-/// Finishes all kept triangles, those that reach into all sides of the region first.
+/// All kept triangles with what is derived from their corners.
 SCREE_FN void scree_filter_finish(scree_overlap_body *body)
 {
-    int32_t t = 0;
-    for (int32_t from = 0; from < body->num_triangles; ++from)
-        if (scree_filter_common_sides(body, body->kept[from].v) == 0) scree_filter_finish_triangle(body, from, t++);
-    body->num_near_triangles = t;
-    if (t == body->num_triangles) return;
-    for (int32_t from = 0; from < body->num_triangles; ++from)
-        if (scree_filter_common_sides(body, body->kept[from].v) != 0) scree_filter_finish_triangle(body, from, t++);
+    for (int32_t t = 0; t < body->num_triangles; ++t)
+    {
+        const scree_kept_triangle kept = body->kept[t];
+        scree_overlap_triangle *triangle = body->triangles + t;
+        const scree_vec3 p0 = body->points[kept.v[0]];
+        const scree_vec3 p1 = body->points[kept.v[1]];
+        const scree_vec3 p2 = body->points[kept.v[2]];
+        triangle->id = kept.id;
+        triangle->has_foot = false;
+        for (int32_t k = 0; k < 3; ++k)
+        {
+            triangle->v[k] = kept.v[k];
+            triangle->crossing[k] = -1;
+        }
+        triangle->face.p[0] = p0;
+        triangle->face.p[1] = p1;
+        triangle->face.p[2] = p2;
+        triangle->face.normal = scree_vec3_cross(scree_vec3_sub(p1, p0), scree_vec3_sub(p2, p0));
+        triangle->face.offset = scree_vec3_dot(triangle->face.normal, p0);
+        const int32_t id0 = body->vertex_id[kept.v[0]];
+        const int32_t id1 = body->vertex_id[kept.v[1]];
+        const int32_t id2 = body->vertex_id[kept.v[2]];
+        triangle->face.reversed = (int32_t)(id0 > id1) | (int32_t)(id1 > id2) << 1 | (int32_t)(id2 > id0) << 2;
+        const scree_vec3 lower = scree_vec3_min(scree_vec3_min(p0, p1), p2);
+        const scree_vec3 upper = scree_vec3_max(scree_vec3_max(p0, p1), p2);
+        triangle->face.size = upper.x - lower.x + (upper.y - lower.y) + (upper.z - lower.z);
+        body->triangle_slot[kept.id] = t;
+    }
 }
 
 #endif

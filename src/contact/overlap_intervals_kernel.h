@@ -1,0 +1,99 @@
+/// \file overlap_intervals_kernel.h
+/// Intervals of an edge of one body that lie inside the other: from an entering crossing or an inside vertex to the
+/// next leaving crossing or inside vertex.
+#ifndef SCREE_OVERLAP_INTERVALS_KERNEL_H
+#define SCREE_OVERLAP_INTERVALS_KERNEL_H
+
+#include "contact/overlap_parts.h"
+
+/// Place of the neighbour across side k of kept triangle t, or -1 if the neighbour is not kept.
+SCREE_FN int32_t scree_kept_neighbour(const scree_overlap_body *body, const scree_shape_view *shape, int32_t t,
+                                      int32_t k)
+{
+    const int32_t id = shape->neighbours[3 * body->triangles[t].id + k];
+    const int32_t slot = body->triangle_slot[id];
+    return slot < body->num_triangles && body->triangles[slot].id == id ? slot : -1;
+}
+
+/// A corner of the overlap solid: a crossing, or an inside vertex of one of the bodies.
+typedef struct scree_overlap_corner
+{
+    int32_t kind; ///< 0: a vertex of A, 1: a vertex of B, 2: a crossing
+    int32_t index;
+} scree_overlap_corner;
+
+typedef struct scree_overlap_interval
+{
+    scree_vec3 point[2];
+    scree_overlap_corner corner[2];
+} scree_overlap_interval;
+
+/// Patch of a corner, or its parent while patches are being told apart.
+SCREE_FN int32_t *scree_overlap_patch_of(scree_overlap_slice *slice, scree_overlap_corner corner)
+{
+    return corner.kind == 2 ? &slice->crossings[corner.index].patch : slice->body[corner.kind].patch + corner.index;
+}
+
+/// Where a walk along one edge is: crossings and ends of it that may still start or end an interval.
+typedef struct scree_interval_walk
+{
+    int32_t v[2];        ///< the edge's first and last vertex
+    int32_t num_left[2]; ///< how often each of them counts: 0 or 1
+    int32_t crossing[2]; ///< the next that may enter, the next that may leave; -1: none
+} scree_interval_walk;
+
+/// Does the edge along side k of kept triangle t have intervals? Asked of the one of its triangles in which it runs up.
+SCREE_FN bool scree_overlap_edge_is_inside(const scree_overlap_body *body, int32_t t, int32_t k)
+{
+    const scree_overlap_triangle *triangle = body->triangles + t;
+    if ((triangle->face.reversed >> k & 1) != 0) return false;
+    if (triangle->crossing[k] >= 0) return true;
+    return body->num_inside > 0 && body->inside[triangle->v[k]] > 0; // without a crossing both ends are inside or none
+}
+
+SCREE_FN void scree_interval_walk_start(const scree_overlap_body *body, int32_t t, int32_t k, scree_interval_walk *walk)
+{
+    const scree_overlap_triangle *triangle = body->triangles + t;
+    walk->v[0] = triangle->v[k];
+    walk->v[1] = triangle->v[k == 2 ? 0 : k + 1];
+    for (int32_t end = 0; end < 2; ++end)
+    {
+        walk->num_left[end] = body->inside[walk->v[end]];
+        walk->crossing[end] = triangle->crossing[k];
+    }
+}
+
+/// Next interval along the edge. False at the end; slice->is_closed is cleared if one of its ends is missing.
+SCREE_FN bool scree_overlap_next_interval(scree_overlap_slice *slice, const scree_overlap_body *body,
+                                          scree_interval_walk *walk, scree_overlap_interval *interval)
+{
+    bool has[2];
+    for (int32_t end = 0; end < 2; ++end)
+    {
+        // an inside vertex comes first among the starts and last among the ends
+        const int32_t wanted = end == 0 ? 1 : -1;
+        int32_t c = walk->crossing[end];
+        while (c >= 0 && slice->crossings[c].sign != wanted) c = slice->crossings[c].next;
+        const bool takes_vertex = walk->num_left[end] > 0 && (end == 0 || c < 0);
+        has[end] = takes_vertex || c >= 0;
+        if (takes_vertex)
+        {
+            --walk->num_left[end];
+            interval->point[end] = body->points[walk->v[end]];
+            interval->corner[end].kind = (int32_t)(body - slice->body);
+            interval->corner[end].index = walk->v[end];
+        }
+        else if (c >= 0)
+        {
+            interval->point[end] = slice->crossings[c].point;
+            interval->corner[end].kind = 2;
+            interval->corner[end].index = c;
+            walk->crossing[end] = slice->crossings[c].next;
+        }
+        if (takes_vertex) walk->crossing[end] = c;
+    }
+    if (has[0] != has[1]) slice->is_closed = false;
+    return has[0] && has[1];
+}
+
+#endif

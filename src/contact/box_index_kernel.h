@@ -5,7 +5,7 @@
 #ifndef SCREE_BOX_INDEX_KERNEL_H
 #define SCREE_BOX_INDEX_KERNEL_H
 
-#include "core/vec.h"
+#include "core/bits.h"
 
 #define SCREE_INDEX_BINS 16
 #define SCREE_INDEX_MAX 64
@@ -21,16 +21,6 @@ typedef struct scree_box_index
     uint64_t starts[3][SCREE_INDEX_BINS];  ///< boxes whose lower bound lies in this bin or before
     uint64_t reaches[3][SCREE_INDEX_BINS]; ///< boxes whose upper bound lies in this bin or beyond
 } scree_box_index;
-
-/// Number of the lowest bit that is set; word is not 0.
-SCREE_FN int32_t scree_lowest_bit(uint64_t word)
-{
-#ifdef __CUDA_ARCH__
-    return __ffsll((long long)word) - 1;
-#else
-    return __builtin_ctzll(word);
-#endif
-}
 
 /// Bins per length such that a coordinate within the bounds, less the lower one, lands in a bin.
 SCREE_FN scree_real scree_index_scale(scree_real lower, scree_real upper)

@@ -62,6 +62,15 @@ SCREE_FN scree_vec3 scree_box_half(scree_box box)
     return scree_vec3_scale(scree_vec3_sub(box.upper, box.lower), (scree_real)0.5);
 }
 
+/// Largest coordinate in magnitude.
+SCREE_FN scree_real scree_box_reach(scree_box box)
+{
+    const scree_vec3 l = box.lower;
+    const scree_vec3 u = box.upper;
+    return scree_max(scree_max(scree_max(scree_abs(l.x), scree_abs(u.x)), scree_max(scree_abs(l.y), scree_abs(u.y))),
+                     scree_max(scree_abs(l.z), scree_abs(u.z)));
+}
+
 /// Components of v along the working axes, v in body axes of A: a cyclic permutation, then z and x change sign
 /// together.
 SCREE_FN scree_vec3 scree_frame_turn(const scree_overlap_frame *frame, scree_vec3 v)

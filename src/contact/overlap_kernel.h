@@ -55,15 +55,6 @@ SCREE_FN scree_box scree_overlap_body_box(const scree_posed_shape *posed, scree_
     return box;
 }
 
-/// Largest coordinate in magnitude.
-SCREE_FN scree_real scree_box_reach(scree_box box)
-{
-    const scree_vec3 l = box.lower;
-    const scree_vec3 u = box.upper;
-    return scree_max(scree_max(scree_max(scree_abs(l.x), scree_abs(u.x)), scree_max(scree_abs(l.y), scree_abs(u.y))),
-                     scree_max(scree_abs(l.z), scree_abs(u.z)));
-}
-
 /// Frame and boxes. False if the boxes are apart.
 SCREE_FN bool scree_overlap_set_up(const scree_overlap_pair *pair, scree_overlap_setup *setup)
 {
@@ -101,7 +92,8 @@ SCREE_FN scree_real scree_overlap_load(scree_overlap_body *body, const scree_pos
 {
     if (!scree_filter_uses_tree(posed->shape)) return scree_filter_load_all(body, posed, direction);
     const scree_vec3 turned = scree_mat3_apply_transposed(posed->rows, direction);
-    return scree_support(posed->shape, turned) + scree_vec3_dot(direction, posed->offset);
+    const scree_real reach = scree_support_bound(posed->shape->support_map, turned, posed->shape->bounding_radius);
+    return reach + scree_vec3_dot(direction, posed->offset);
 }
 
 /// Half-spaces: how far A reaches along the direction, and how far B reaches back. False if they are apart.

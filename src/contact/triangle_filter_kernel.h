@@ -44,13 +44,7 @@ typedef struct scree_posed_shape
     scree_vec3 offset;
 } scree_posed_shape;
 
-/// Shapes up to this many triangles are filtered one triangle after the other, larger ones through their tree.
-#define SCREE_FILTER_TREE_FROM 512
-
-SCREE_FN bool scree_filter_uses_tree(const scree_shape_view *shape)
-{
-    return shape->num_triangles >= SCREE_FILTER_TREE_FROM && shape->tree.nodes != NULL;
-}
+SCREE_FN bool scree_filter_uses_tree(const scree_shape_view *shape) { return shape->wide_tree.nodes != NULL; }
 
 SCREE_FN scree_vec3 scree_posed_vertex(const scree_posed_shape *posed, int32_t v)
 {
@@ -173,48 +167,35 @@ SCREE_FN scree_filter_region scree_filter_in_body(const scree_posed_shape *posed
     return turned;
 }
 
-/// Can anything in a box of the shape's tree reach into the region? Never says no where a triangle would be kept.
-SCREE_FN bool scree_filter_enters_node(const scree_filter_region *region, const scree_box *box)
-{
-    const scree_vec3 d = region->direction;
-    const scree_real least = scree_min(d.x * box->lower.x, d.x * box->upper.x) +
-                             scree_min(d.y * box->lower.y, d.y * box->upper.y) +
-                             scree_min(d.z * box->lower.z, d.z * box->upper.z);
-    return least <= region->reach && scree_box_overlaps(region->box, *box);
-}
-
 /// Keeps triangles through the tree; `body_box` is the box of the whole body. False if the buffers are too small.
 SCREE_FN bool scree_filter_tree(scree_overlap_body *body, const scree_posed_shape *posed,
                                 const scree_filter_region *region, scree_box body_box)
 {
     const scree_filter_region turned = scree_filter_in_body(posed, region, body_box);
-    const scree_lbvh_view *tree = &posed->shape->tree;
+    const scree_shape_view *shape = posed->shape;
+    const scree_wide_query query =
+        scree_wide_query_make(turned.box, turned.direction, turned.reach, scree_box_reach(shape->box));
+    scree_wide_walk walk;
+    scree_wide_walk_start(&shape->wide_tree, &query, &walk);
     body->num_vertices = 0;
     body->num_triangles = 0;
-    int32_t k = tree->root;
-    while (k != SCREE_LBVH_END)
+    uint32_t found;
+    for (;;)
     {
-        const scree_lbvh_node *node = tree->nodes + k;
-        if (!scree_filter_enters_node(&turned, &node->box))
+        const int32_t node = scree_wide_walk_next(&shape->wide_tree, &query, &walk, &found);
+        if (node < 0) return true;
+        if (body->num_triangles + SCREE_WIDE_CHILDREN > body->max_triangles ||
+            body->num_vertices + 3 * SCREE_WIDE_CHILDREN > body->max_vertices)
+            return false;
+        for (; found != 0; found &= found - 1)
         {
-            k = node->escape;
-            continue;
+            scree_kept_triangle *kept = body->kept + body->num_triangles;
+            kept->id = shape->wide_tree.items[SCREE_WIDE_CHILDREN * node + scree_lowest_bit(found)];
+            for (int32_t c = 0; c < 3; ++c)
+                kept->v[c] = scree_filter_vertex(body, posed, region, shape->triangles[kept->id].v[c]);
+            body->num_triangles += (scree_filter_common_sides(body, kept->v) & region->dropping) == 0;
         }
-        if (node->first_child >= 0)
-        {
-            k = node->first_child;
-            continue;
-        }
-        if (body->num_triangles == body->max_triangles || body->num_vertices + 3 > body->max_vertices) return false;
-        scree_kept_triangle *kept = body->kept + body->num_triangles;
-        kept->id = -1 - node->first_child;
-        for (int32_t c = 0; c < 3; ++c)
-            kept->v[c] = scree_filter_vertex(body, posed, region, posed->shape->triangles[kept->id].v[c]);
-        k = node->escape;
-        if ((scree_filter_common_sides(body, kept->v) & region->dropping) != 0) continue;
-        ++body->num_triangles;
     }
-    return true;
 }
 
 /// Box of the part of a triangle within the half-space, which at least one of its corners reaches.

@@ -59,7 +59,8 @@ static double middle_of(double a, double b, double c)
     return c < low ? low : c > high ? high : c;
 }
 
-static scree_status build_tree(scree_shape *shape)
+/// The trees over the triangles, in the frame of the shape.
+static scree_status build_trees(scree_shape *shape)
 {
     const scree_mesh *mesh = &shape->mesh;
     scree_box *boxes = malloc(((size_t)mesh->num_triangles + 1) * sizeof *boxes);
@@ -69,9 +70,19 @@ static scree_status build_tree(scree_shape *shape)
         boxes[i] = scree_box_empty();
         for (int k = 0; k < 3; ++k) boxes[i] = scree_box_with_point(boxes[i], mesh->vertices[mesh->triangles[i].v[k]]);
     }
-    const scree_status status = scree_lbvh_build(&shape->tree, boxes, mesh->num_triangles);
+    scree_status status = scree_lbvh_build(&shape->tree, boxes, mesh->num_triangles);
+    if (status == SCREE_OK && mesh->num_triangles >= SCREE_LARGE_SHAPE)
+        status = scree_wide_tree_build(&shape->wide_tree, &shape->tree, boxes, mesh->num_triangles);
     free(boxes);
     return status;
+}
+
+static scree_status map_support(scree_shape *shape)
+{
+    shape->support_map = malloc(SCREE_SUPPORT_VALUES * sizeof *shape->support_map);
+    if (shape->support_map == NULL) return SCREE_OUT_OF_MEMORY;
+    scree_support_map_fill(shape->support_map, shape->mesh.vertices, shape->mesh.num_vertices);
+    return SCREE_OK;
 }
 
 static void fill_view(scree_shape *shape, bool is_convex)
@@ -85,6 +96,8 @@ static void fill_view(scree_shape *shape, bool is_convex)
         .triangles = mesh->triangles,
         .neighbours = shape->neighbours,
         .tree = shape->tree.view,
+        .wide_tree = shape->wide_tree.view,
+        .support_map = shape->support_map,
         .num_vertices = mesh->num_vertices,
         .num_triangles = mesh->num_triangles,
         .is_convex = is_convex,
@@ -110,7 +123,8 @@ scree_status scree_shape_create(scree_shape *shape, const scree_mesh *mesh, scre
     shape->neighbours = malloc((3 * (size_t)mesh->num_triangles + 1) * sizeof *shape->neighbours);
     if (shape->neighbours == NULL) status = SCREE_OUT_OF_MEMORY;
     if (status == SCREE_OK) status = scree_mesh_neighbours(&shape->mesh, shape->neighbours);
-    if (status == SCREE_OK) status = build_tree(shape);
+    if (status == SCREE_OK) status = build_trees(shape);
+    if (status == SCREE_OK && mesh->num_triangles >= SCREE_LARGE_SHAPE) status = map_support(shape);
     if (status != SCREE_OK)
     {
         scree_shape_destroy(shape);
@@ -146,5 +160,7 @@ void scree_shape_destroy(scree_shape *shape)
     scree_mesh_destroy(&shape->mesh);
     free(shape->neighbours);
     scree_lbvh_destroy(&shape->tree);
+    scree_wide_tree_destroy(&shape->wide_tree);
+    free(shape->support_map);
     *shape = (scree_shape){0};
 }

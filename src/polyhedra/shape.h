@@ -5,8 +5,13 @@
 #define SCREE_SHAPE_INTERNAL_H
 
 #include "bvh/lbvh.h"
+#include "bvh/wide_tree.h"
 #include "polyhedra/mass_properties.h"
 #include "polyhedra/mesh.h"
+#include "polyhedra/support_map.h"
+
+/// Shapes of fewer triangles are gone through one triangle after the other.
+#define SCREE_LARGE_SHAPE 48
 
 /// What a shape is made of; contacts are found by a table over the kinds of two shapes, see narrow_phase.h.
 typedef enum scree_shape_kind
@@ -23,6 +28,8 @@ typedef struct scree_shape_view
     const scree_triangle *triangles; ///< (num_triangles)
     const int32_t *neighbours;       ///< (num_triangles, 3) triangle across edge (v[k], v[k+1])
     scree_lbvh_view tree;            ///< over the boxes of the triangles
+    scree_wide_tree_view wide_tree;  ///< the same for shapes of at least SCREE_LARGE_SHAPE triangles, else empty
+    const float *support_map;        ///< (SCREE_SUPPORT_VALUES) of such shapes, else NULL
     int32_t num_vertices;
     int32_t num_triangles;
     bool is_convex;
@@ -36,6 +43,8 @@ typedef struct scree_shape
     scree_mesh mesh; ///< body frame
     int32_t *neighbours;
     scree_lbvh tree;
+    scree_wide_tree wide_tree;
+    float *support_map;
     scree_mass_properties properties; ///< of the mesh as stored, or of the sphere; in the body frame
     scree_shape_view view;
     double frame_position[3];    ///< origin of the body frame in the frame of the source mesh

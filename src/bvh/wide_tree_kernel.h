@@ -1,0 +1,136 @@
+/// \file wide_tree_kernel.h
+/// A tree with eight children per node over boxes that never change: the triangles of a shape, in its body frame.
+/// Nodes are complete and need no links: node j of a level holds the boxes of nodes 8 j to 8 j + 7 of the level below,
+/// at the lowest those of the items. Boxes are in single precision, rounded outwards, eight to a node side by side, so
+/// that a query tests them together.
+#ifndef SCREE_WIDE_TREE_KERNEL_H
+#define SCREE_WIDE_TREE_KERNEL_H
+
+#include "core/bits.h"
+
+#define SCREE_WIDE_CHILDREN 8
+#define SCREE_WIDE_LEVELS 10 ///< enough for 2^30 items
+
+/// The boxes of eight children; of those that are not there, empty ones.
+typedef struct scree_wide_node
+{
+    float bounds[6][SCREE_WIDE_CHILDREN]; ///< lower x, y, z, upper x, y, z
+} scree_wide_node;
+
+/// Borrowed pointers.
+typedef struct scree_wide_tree_view
+{
+    const scree_wide_node *nodes;          ///< level by level from the lowest, or NULL
+    const int32_t *items;                  ///< (num_items) in the order of the lowest level
+    int32_t first_node[SCREE_WIDE_LEVELS]; ///< of each level
+    int32_t num_levels;
+    int32_t num_items;
+} scree_wide_tree_view;
+
+/// Largest float not above x and smallest not below, or one step beyond these.
+SCREE_FN float scree_float_below(scree_real x)
+{
+    const float near = (float)x;
+    return near - (near < 0 ? -near : near) * FLT_EPSILON - FLT_MIN;
+}
+SCREE_FN float scree_float_above(scree_real x) { return -scree_float_below(-x); }
+
+/// What is looked for: boxes that overlap a box and reach into the half-space direction . x <= reach.
+typedef struct scree_wide_query
+{
+    float lower[3], upper[3];
+    float direction[3];
+    float reach;     ///< widened by the rounding of the products
+    int32_t near[3]; ///< bounds of the corner that is deepest in the half-space
+} scree_wide_query;
+
+/// `size` bounds every coordinate of the tree.
+SCREE_FN scree_wide_query scree_wide_query_make(scree_box box, scree_vec3 direction, scree_real reach, scree_real size)
+{
+    const scree_real lower[3] = {box.lower.x, box.lower.y, box.lower.z};
+    const scree_real upper[3] = {box.upper.x, box.upper.y, box.upper.z};
+    const scree_real along[3] = {direction.x, direction.y, direction.z};
+    scree_wide_query query;
+    scree_real rounding = 0;
+    for (int32_t k = 0; k < 3; ++k)
+    {
+        query.lower[k] = scree_float_below(lower[k]);
+        query.upper[k] = scree_float_above(upper[k]);
+        query.direction[k] = (float)along[k];
+        query.near[k] = along[k] > 0 ? k : k + 3;
+        rounding += scree_abs(along[k]) * size;
+    }
+    query.reach = scree_float_above(reach + 8 * (scree_real)FLT_EPSILON * rounding);
+    return query;
+}
+
+/// Bits of the children that may meet the query; all that do are among them.
+SCREE_FN uint32_t scree_wide_node_query(const scree_wide_node *node, const scree_wide_query *query)
+{
+    const float *near_x = node->bounds[query->near[0]];
+    const float *near_y = node->bounds[query->near[1]];
+    const float *near_z = node->bounds[query->near[2]];
+    // tests of all children side by side first, bits after
+    int32_t meets[SCREE_WIDE_CHILDREN];
+#ifndef __CUDACC__
+#pragma omp simd
+#endif
+    for (int32_t k = 0; k < SCREE_WIDE_CHILDREN; ++k)
+    {
+        const float least =
+            query->direction[0] * near_x[k] + query->direction[1] * near_y[k] + query->direction[2] * near_z[k];
+        meets[k] = (int32_t)(node->bounds[0][k] <= query->upper[0]) & (int32_t)(node->bounds[3][k] >= query->lower[0]) &
+                   (int32_t)(node->bounds[1][k] <= query->upper[1]) & (int32_t)(node->bounds[4][k] >= query->lower[1]) &
+                   (int32_t)(node->bounds[2][k] <= query->upper[2]) & (int32_t)(node->bounds[5][k] >= query->lower[2]) &
+                   (int32_t)(least <= query->reach);
+    }
+    uint32_t found = 0;
+    for (int32_t k = 0; k < SCREE_WIDE_CHILDREN; ++k) found |= (uint32_t)meets[k] << k;
+    return found;
+}
+
+/// Where a walk over the tree is.
+typedef struct scree_wide_walk
+{
+    uint32_t open[SCREE_WIDE_LEVELS]; ///< children still to visit
+    int32_t node[SCREE_WIDE_LEVELS];
+    int32_t level;
+} scree_wide_walk;
+
+SCREE_FN void scree_wide_walk_start(const scree_wide_tree_view *tree, const scree_wide_query *query,
+                                    scree_wide_walk *walk)
+{
+    walk->level = tree->num_levels - 1;
+    if (walk->level < 0) return;
+    walk->node[walk->level] = 0;
+    walk->open[walk->level] = scree_wide_node_query(tree->nodes + tree->first_node[walk->level], query);
+}
+
+/// Next node of the lowest level of which something may meet the query: its number, its children in *found; -1 at the
+/// end.
+SCREE_FN int32_t scree_wide_walk_next(const scree_wide_tree_view *tree, const scree_wide_query *query,
+                                      scree_wide_walk *walk, uint32_t *found)
+{
+    while (walk->level < tree->num_levels && walk->level >= 0)
+    {
+        if (walk->open[walk->level] == 0)
+        {
+            ++walk->level;
+            continue;
+        }
+        if (walk->level == 0)
+        {
+            *found = walk->open[0];
+            walk->open[0] = 0;
+            return walk->node[0];
+        }
+        const int32_t child = SCREE_WIDE_CHILDREN * walk->node[walk->level] + scree_lowest_bit(walk->open[walk->level]);
+        walk->open[walk->level] &= walk->open[walk->level] - 1;
+        --walk->level;
+        walk->node[walk->level] = child;
+        walk->open[walk->level] = scree_wide_node_query(tree->nodes + tree->first_node[walk->level] + child, query);
+    }
+    return -1;
+}
+
+#endif

@@ -72,7 +72,7 @@ SCREE_FN uint32_t scree_wide_node_query(const scree_wide_node *node, const scree
     const float *near_z = node->bounds[query->near[2]];
     // tests of all children side by side first, bits after
     int32_t meets[SCREE_WIDE_CHILDREN];
-#ifndef __CUDACC__
+#if defined(_OPENMP) && !defined(__CUDACC__)
 #pragma omp simd
 #endif
     for (int32_t k = 0; k < SCREE_WIDE_CHILDREN; ++k)

@@ -20,16 +20,11 @@ static bool reserve_pieces(scree_overlap_body *body, int32_t max)
 {
     body->max_vertices = 0;
     body->max_triangles = 0;
-    bool is_done = renew(&body->points, max, sizeof *body->points);
-    is_done = renew(&body->vertex_id, max, sizeof *body->vertex_id) && is_done;
-    is_done = renew(&body->depth, max, sizeof *body->depth) && is_done;
-    is_done = renew(&body->outcode, max, sizeof *body->outcode) && is_done;
+    bool is_done = renew(&body->vertices, max, sizeof *body->vertices);
     is_done = renew(&body->kept, max, sizeof *body->kept) && is_done;
-    is_done = renew(&body->inside, max, sizeof *body->inside) && is_done;
     is_done = renew(&body->triangles, max, sizeof *body->triangles) && is_done;
     is_done = renew(&body->triangle_boxes, max, sizeof *body->triangle_boxes) && is_done;
     is_done = renew(&body->links, 2 * (int64_t)max, sizeof *body->links) && is_done;
-    is_done = renew(&body->patch, max, sizeof *body->patch) && is_done;
     if (!is_done) return false;
     body->max_vertices = max;
     body->max_triangles = max;
@@ -107,16 +102,11 @@ void scree_overlap_workspace_destroy(scree_overlap_workspace *workspace)
     for (int side = 0; side < 2; ++side)
     {
         scree_overlap_body *body = slice->body + side;
-        free(body->points);
-        free(body->vertex_id);
-        free(body->depth);
-        free(body->outcode);
-        free(body->inside);
+        free(body->vertices);
         free(body->kept);
         free(body->triangles);
         free(body->triangle_boxes);
         free(body->links);
-        free(body->patch);
         free(body->vertex_slot);
         free(body->triangle_slot);
     }

@@ -31,7 +31,7 @@ SCREE_FN int32_t scree_overlap_add_end(scree_overlap_slice *slice, const scree_s
 
     // in their order along the edge
     const scree_vec3 start = triangle->face.p[end->side];
-    const scree_vec3 along = scree_vec3_sub(triangle->face.p[end->side == 2 ? 0 : end->side + 1], start);
+    const scree_vec3 along = scree_vec3_sub(triangle->face.p[scree_next_corner(end->side)], start);
     int32_t *link = triangle->crossing + end->side;
     while (*link >= 0 && scree_vec3_dot(along, slice->crossings[*link].point) < scree_vec3_dot(along, crossing->point))
         link = &slice->crossings[*link].next;
@@ -63,9 +63,9 @@ SCREE_FN int32_t scree_overlap_find_crossing(const scree_overlap_slice *slice, c
     const int32_t own = is_of_b ? segment->triangle_b : segment->triangle_a;
     const int32_t through = is_of_b ? segment->triangle_a : segment->triangle_b;
     const int32_t neighbour = scree_kept_neighbour(body, shape[is_of_b], own, side);
-    if (neighbour < 0) return -1;
+    if (neighbour < 0 || !body->kept[neighbour].is_finished) return -1;
     // there the side starts at the vertex where it ends here
-    const int32_t start = body->triangles[own].v[side == 2 ? 0 : side + 1];
+    const int32_t start = body->triangles[own].v[scree_next_corner(side)];
     const scree_overlap_triangle *triangle = body->triangles + neighbour;
     const int32_t k = triangle->v[0] == start ? 0 : triangle->v[1] == start ? 1 : 2;
     int32_t c = triangle->crossing[k];
@@ -142,8 +142,8 @@ SCREE_FN bool scree_overlap_meet_by_sides(scree_overlap_slice *slice, int32_t tr
 /// Two triangles whose boxes overlap. False if there are too many crossings.
 SCREE_FN bool scree_overlap_meet(scree_overlap_slice *slice, int32_t triangle_a, int32_t triangle_b)
 {
-    const scree_face *f = &slice->body[0].triangles[triangle_a].face;
-    const scree_face *g = &slice->body[1].triangles[triangle_b].face;
+    const scree_face *f = &scree_overlap_finish(slice->body, triangle_a)->face;
+    const scree_face *g = &scree_overlap_finish(slice->body + 1, triangle_b)->face;
     if (slice->sign_tolerance > 0)
     {
         scree_segment_end p, q;
@@ -183,16 +183,16 @@ SCREE_FN bool scree_overlap_find_segments(scree_overlap_slice *slice)
     return true;
 }
 
-/// How often vertex v of body `side` lies inside the other: by the ray along -z from A, along +z from B.
-SCREE_FN int32_t scree_overlap_count_inside(const scree_overlap_slice *slice, int32_t side, scree_vec3 p)
+/// How often a vertex of body `side` lies inside the other: by the ray along -z from A, along +z from B.
+SCREE_FN int32_t scree_overlap_count_inside(scree_overlap_slice *slice, int32_t side, scree_vec3 p)
 {
-    const scree_overlap_body *other = slice->body + 1 - side;
+    scree_overlap_body *other = slice->body + 1 - side;
     int32_t count = 0;
     for (int32_t t = 0; t < other->num_triangles; ++t)
     {
         const scree_box box = other->triangle_boxes[t];
         if (p.x < box.lower.x || p.x > box.upper.x || p.y < box.lower.y || p.y > box.upper.y) continue;
-        const scree_face *g = &other->triangles[t].face;
+        const scree_face *g = &scree_overlap_finish(other, t)->face;
         int32_t own = SCREE_SIGN_UNSURE;
         if (slice->sign_tolerance > 0) own = scree_vertex_sign(p, g, side == 0, slice->sign_tolerance);
         if (own == SCREE_SIGN_UNSURE) own = side == 0 ? scree_vertex_a_above(p, g) : -scree_vertex_b_below(p, g);
@@ -207,19 +207,23 @@ SCREE_FN int32_t scree_overlap_count_inside(const scree_overlap_slice *slice, in
 /// Gathers the edges with an end that is not known yet; returns their number.
 SCREE_FN int32_t scree_overlap_find_links(const scree_overlap_slice *slice, scree_overlap_body *body)
 {
+    const scree_overlap_vertex *vertices = body->vertices;
     int32_t num = 0;
     for (int32_t t = 0; t < body->num_triangles; ++t)
     {
-        const scree_overlap_triangle *triangle = body->triangles + t;
+        const int32_t *v = body->kept[t].v;
+        const int32_t unknown = (int32_t)(vertices[v[0]].inside == SCREE_INSIDE_UNKNOWN) |
+                                (int32_t)(vertices[v[1]].inside == SCREE_INSIDE_UNKNOWN) << 1 |
+                                (int32_t)(vertices[v[2]].inside == SCREE_INSIDE_UNKNOWN) << 2;
+        if (unknown == 0) continue;
+        const scree_overlap_triangle *triangle = scree_overlap_finish(body, t);
         for (int32_t k = 0; k < 3; ++k)
         {
-            const int32_t v0 = triangle->v[k];
-            const int32_t v1 = triangle->v[k == 2 ? 0 : k + 1];
-            const bool is_known = body->inside[v0] != SCREE_INSIDE_UNKNOWN && body->inside[v1] != SCREE_INSIDE_UNKNOWN;
-            if (is_known || (triangle->face.reversed >> k & 1) != 0) continue;
+            const int32_t next = scree_next_corner(k);
+            if ((unknown & (1 << k | 1 << next)) == 0 || (triangle->face.reversed >> k & 1) != 0) continue;
             scree_overlap_link *link = body->links + num++;
-            link->v[0] = v0;
-            link->v[1] = v1;
+            link->v[0] = v[k];
+            link->v[1] = v[next];
             link->change = 0;
             for (int32_t c = triangle->crossing[k]; c >= 0; c = slice->crossings[c].next)
                 link->change += slice->crossings[c].sign;
@@ -238,8 +242,8 @@ SCREE_FN int32_t scree_overlap_follow_links(scree_overlap_slice *slice, scree_ov
         for (int32_t i = 0; i < before; ++i)
         {
             const scree_overlap_link link = body->links[i];
-            int32_t *inside0 = body->inside + link.v[0];
-            int32_t *inside1 = body->inside + link.v[1];
+            int32_t *inside0 = &body->vertices[link.v[0]].inside;
+            int32_t *inside1 = &body->vertices[link.v[1]].inside;
             if (*inside0 != SCREE_INSIDE_UNKNOWN && *inside1 != SCREE_INSIDE_UNKNOWN)
                 slice->is_closed = slice->is_closed && *inside1 - *inside0 == link.change;
             else if (*inside0 != SCREE_INSIDE_UNKNOWN) *inside1 = *inside0 + link.change;
@@ -256,28 +260,28 @@ SCREE_FN int32_t scree_overlap_follow_links(scree_overlap_slice *slice, scree_ov
 SCREE_FN void scree_overlap_find_inside(scree_overlap_slice *slice, int32_t side)
 {
     scree_overlap_body *body = slice->body + side;
-    const int32_t dropping = side == 0 ? SCREE_OUTSIDE_A : SCREE_OUTSIDE_B;
     body->num_inside = 0;
     int32_t num_unknown = 0;
     for (int32_t v = 0; v < body->num_vertices; ++v)
     {
-        const bool is_outside = (body->outcode[v] & dropping) != 0;
-        body->inside[v] = is_outside ? 0 : SCREE_INSIDE_UNKNOWN;
+        const bool is_outside = scree_filter_is_outside(body, side == 0, body->vertices + v);
+        body->vertices[v].inside = is_outside ? 0 : SCREE_INSIDE_UNKNOWN;
         num_unknown += !is_outside;
     }
     if (num_unknown == 0) return;
     int32_t num_links = scree_overlap_follow_links(slice, body, scree_overlap_find_links(slice, body));
     while (num_links > 0)
     {
-        const int32_t v = body->links[0].v[0];
-        body->inside[v] = scree_overlap_count_inside(slice, side, body->points[v]);
+        scree_overlap_vertex *vertex = body->vertices + body->links[0].v[0];
+        vertex->inside = scree_overlap_count_inside(slice, side, vertex->point);
         num_links = scree_overlap_follow_links(slice, body, num_links);
     }
     for (int32_t v = 0; v < body->num_vertices; ++v)
     {
-        if (body->inside[v] == SCREE_INSIDE_UNKNOWN) body->inside[v] = 0;
-        body->num_inside += body->inside[v] != 0;
-        if (body->inside[v] < 0) slice->is_closed = false;
+        scree_overlap_vertex *vertex = body->vertices + v;
+        if (vertex->inside == SCREE_INSIDE_UNKNOWN) vertex->inside = 0;
+        body->num_inside += vertex->inside != 0;
+        if (vertex->inside < 0) slice->is_closed = false;
     }
 }
 

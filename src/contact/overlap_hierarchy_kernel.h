@@ -12,6 +12,12 @@
 
 #include "core/vec.h"
 
+/// Corners of a triangle, by number: the next one and the one before.
+SCREE_FN int32_t scree_next_corner(int32_t k) { return 0x09 >> (2 * k) & 3; }
+SCREE_FN int32_t scree_corner_before(int32_t k) { return 0x12 >> (2 * k) & 3; }
+/// The corner that is alone on its side; bit k of `sides` tells on which side corner k is, not all on the same.
+SCREE_FN int32_t scree_lone_corner(int32_t sides) { return 0x690 >> (2 * sides) & 3; }
+
 /// An edge, lower vertex id first.
 typedef struct scree_line
 {

@@ -10,9 +10,9 @@
 SCREE_FN int32_t scree_kept_neighbour(const scree_overlap_body *body, const scree_shape_view *shape, int32_t t,
                                       int32_t k)
 {
-    const int32_t id = shape->neighbours[3 * body->triangles[t].id + k];
+    const int32_t id = shape->neighbours[3 * body->kept[t].id + k];
     const int32_t slot = body->triangle_slot[id];
-    return slot < body->num_triangles && body->triangles[slot].id == id ? slot : -1;
+    return slot < body->num_triangles && body->kept[slot].id == id ? slot : -1;
 }
 
 /// A corner of the overlap solid: a crossing, or an inside vertex of one of the bodies.
@@ -31,7 +31,8 @@ typedef struct scree_overlap_interval
 /// Patch of a corner, or its parent while patches are being told apart.
 SCREE_FN int32_t *scree_overlap_patch_of(scree_overlap_slice *slice, scree_overlap_corner corner)
 {
-    return corner.kind == 2 ? &slice->crossings[corner.index].patch : slice->body[corner.kind].patch + corner.index;
+    return corner.kind == 2 ? &slice->crossings[corner.index].patch
+                            : &slice->body[corner.kind].vertices[corner.index].patch;
 }
 
 /// Where a walk along one edge is: crossings and ends of it that may still start or end an interval.
@@ -48,17 +49,18 @@ SCREE_FN bool scree_overlap_edge_is_inside(const scree_overlap_body *body, int32
     const scree_overlap_triangle *triangle = body->triangles + t;
     if ((triangle->face.reversed >> k & 1) != 0) return false;
     if (triangle->crossing[k] >= 0) return true;
-    return body->num_inside > 0 && body->inside[triangle->v[k]] > 0; // without a crossing both ends are inside or none
+    return body->num_inside > 0 &&
+           body->vertices[triangle->v[k]].inside > 0; // without a crossing both ends are inside or none
 }
 
 SCREE_FN void scree_interval_walk_start(const scree_overlap_body *body, int32_t t, int32_t k, scree_interval_walk *walk)
 {
     const scree_overlap_triangle *triangle = body->triangles + t;
     walk->v[0] = triangle->v[k];
-    walk->v[1] = triangle->v[k == 2 ? 0 : k + 1];
+    walk->v[1] = triangle->v[scree_next_corner(k)];
     for (int32_t end = 0; end < 2; ++end)
     {
-        walk->num_left[end] = body->inside[walk->v[end]];
+        walk->num_left[end] = body->vertices[walk->v[end]].inside;
         walk->crossing[end] = triangle->crossing[k];
     }
 }
@@ -79,7 +81,7 @@ SCREE_FN bool scree_overlap_next_interval(scree_overlap_slice *slice, const scre
         if (takes_vertex)
         {
             --walk->num_left[end];
-            interval->point[end] = body->points[walk->v[end]];
+            interval->point[end] = body->vertices[walk->v[end]].point;
             interval->corner[end].kind = (int32_t)(body - slice->body);
             interval->corner[end].index = walk->v[end];
         }

@@ -87,7 +87,7 @@ SCREE_FN bool scree_overlap_set_up(const scree_overlap_pair *pair, scree_overlap
     return true;
 }
 
-/// How far a body reaches along a direction; loads its vertices unless it uses its tree.
+/// How far a body reaches along a direction, or a little more; loads its vertices unless it uses its tree.
 SCREE_FN scree_real scree_overlap_load(scree_overlap_body *body, const scree_posed_shape *posed, scree_vec3 direction)
 {
     if (!scree_filter_uses_tree(posed->shape)) return scree_filter_load_all(body, posed, direction);
@@ -103,17 +103,17 @@ SCREE_FN bool scree_overlap_half_spaces(scree_overlap_slice *slice, const scree_
     const scree_vec3 d = setup->direction;
     const scree_real size = scree_max(scree_box_reach(setup->box[0]), scree_box_reach(setup->box[1]));
     const scree_real rounding = 64 * SCREE_REAL_EPSILON * size * (scree_abs(d.x) + scree_abs(d.y) + scree_abs(d.z));
+    slice->tolerance = SCREE_SIGN_MARGIN * SCREE_REAL_EPSILON * size;
     region[0].direction = scree_vec3_negate(d);
-    region[0].dropping = SCREE_OUTSIDE_A;
+    region[0].is_of_a = true;
     region[1].direction = d;
-    region[1].dropping = SCREE_OUTSIDE_B;
+    region[1].is_of_a = false;
     for (int32_t side = 0; side < 2; ++side)
     {
         const int32_t other = 1 - side;
         const scree_real reach = scree_overlap_load(slice->body + other, setup->posed + other, region[side].direction);
         region[side].reach = reach + rounding;
     }
-    slice->tolerance = SCREE_SIGN_MARGIN * SCREE_REAL_EPSILON * size;
     return region[0].reach + region[1].reach >= 0;
 }
 
@@ -123,7 +123,12 @@ SCREE_FN bool scree_overlap_keep(scree_overlap_slice *slice, int32_t side, const
 {
     scree_overlap_body *body = slice->body + side;
     const scree_posed_shape *posed = setup->posed + side;
-    if (!scree_filter_uses_tree(posed->shape)) scree_filter_all(body, posed->shape, region);
+    if (!scree_filter_uses_tree(posed->shape))
+    {
+        // what was loaded is the distance along the direction of the other's half-space, which is opposite
+        for (int32_t v = 0; v < body->num_vertices; ++v) body->vertices[v].depth += region->reach;
+        scree_filter_all(body, posed->shape);
+    }
     else if (!scree_filter_tree(body, posed, region, setup->box[side]))
     {
         slice->lack = SCREE_LACK_PIECES;
@@ -148,8 +153,7 @@ SCREE_FN bool scree_overlap_filter(scree_overlap_slice *slice, const scree_overl
     if (!scree_overlap_keep(slice, 0, setup, region)) return false;
     region[1].box = slice->body[0].box;
     scree_filter_again(slice->body + 1, region + 1);
-    if (slice->body[1].num_triangles == 0) return false;
-    return true;
+    return slice->body[1].num_triangles > 0;
 }
 
 /// Triangles ready for the tests of a scheme.
@@ -160,7 +164,7 @@ SCREE_FN void scree_overlap_prepare(scree_overlap_slice *slice, scree_overlap_sc
     const scree_box b = slice->body[1].box;
     slice->common.lower = scree_vec3_max(a.lower, b.lower);
     slice->common.upper = scree_vec3_min(a.upper, b.upper);
-    for (int32_t side = 0; side < 2; ++side) scree_filter_finish(slice->body + side);
+    for (int32_t side = 0; side < 2; ++side) scree_filter_enter(slice->body + side);
 }
 
 SCREE_FN scree_overlap_result scree_overlap_nothing(scree_overlap_status status)

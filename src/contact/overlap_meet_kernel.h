@@ -31,11 +31,10 @@ typedef struct scree_cut
 SCREE_FN scree_cut scree_cut_make(const scree_face *face, int32_t ups, bool is_of_b)
 {
     scree_cut cut;
-    // two bits for each of the cases
-    cut.lone = 0x690 >> (2 * ups) & 3;
+    cut.lone = scree_lone_corner(ups);
     cut.is_up = (ups >> cut.lone & 1) != 0;
-    const int32_t next = 0x09 >> (2 * cut.lone) & 3;
-    const int32_t before = 0x12 >> (2 * cut.lone) & 3;
+    const int32_t next = scree_next_corner(cut.lone);
+    const int32_t before = scree_corner_before(cut.lone);
     // what is left of a face after the part above the plane is cut off has the cut on its boundary, counter-clockwise
     const bool starts_at_next = cut.is_up == is_of_b;
     cut.first = starts_at_next ? next : before;
@@ -60,7 +59,7 @@ SCREE_FN void scree_segment_end_set(scree_segment_end *end, int32_t is_of_b, int
                                     const scree_real *height)
 {
     end->is_of_b = is_of_b;
-    end->side = (0x09 >> (2 * lone) & 3) == other ? lone : other;
+    end->side = scree_next_corner(lone) == other ? lone : other;
     end->corner[0] = lone;
     end->corner[1] = other;
     end->height[0] = height[lone];

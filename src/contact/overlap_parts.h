@@ -19,11 +19,22 @@ typedef struct scree_overlap_triangle
     bool has_foot;
 } scree_overlap_triangle;
 
+/// A vertex of a kept triangle.
+typedef struct scree_overlap_vertex
+{
+    scree_vec3 point;
+    scree_real depth; ///< in the other's half-space; < 0: beyond it
+    int32_t id;       ///< in the shape
+    int32_t inside;   ///< how often it lies inside the other body: 0 or 1
+    int32_t patch;    ///< of an inside vertex, once patches are told apart
+} scree_overlap_vertex;
+
 /// A triangle that passed the filter.
 typedef struct scree_kept_triangle
 {
-    int32_t v[3]; ///< among the body's vertices here
-    int32_t id;   ///< in the shape
+    int32_t v[3];     ///< among the body's vertices here
+    int32_t id;       ///< in the shape
+    bool is_finished; ///< its scree_overlap_triangle is there
 } scree_kept_triangle;
 
 /// An edge that may join an inside vertex to the rest: how the inside count changes from its first end to its second.
@@ -36,19 +47,15 @@ typedef struct scree_overlap_link
 /// Kept pieces of one body.
 typedef struct scree_overlap_body
 {
-    scree_vec3 *points;                ///< (max_vertices)
-    int32_t *vertex_id;                ///< (max_vertices) in the shape
-    scree_real *depth;                 ///< (max_vertices) below the reach of the other's half-space
-    int32_t *outcode;                  ///< (max_vertices) sides of the region on which the vertex is outside
-    int32_t *inside;                   ///< (max_vertices) how often the vertex lies inside the other body: 0 or 1
-    int32_t *patch;                    ///< (max_vertices) of an inside vertex, once patches are told apart
+    scree_overlap_vertex *vertices;    ///< (max_vertices)
     scree_kept_triangle *kept;         ///< (max_triangles)
-    scree_overlap_triangle *triangles; ///< (max_triangles) the same with all that the sums need
+    scree_overlap_triangle *triangles; ///< (max_triangles) the same with all that tests and sums need, once finished
     scree_box *triangle_boxes; ///< (max_triangles) of what of them lies in the other's half-space, with a margin
     scree_overlap_link *links; ///< (2 max_triangles)
     int32_t *vertex_slot;      ///< (max_shape_vertices) place of a kept vertex of the shape, else anything
     int32_t *triangle_slot;    ///< (max_shape_triangles) the same for triangles
     scree_box box;             ///< of the boxes of the kept triangles
+    scree_box region;          ///< nothing of the body inside the other is outside of this
     int32_t num_vertices, max_vertices;
     int32_t num_triangles, max_triangles;
     int32_t num_inside; ///< vertices inside the other body

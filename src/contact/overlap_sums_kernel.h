@@ -96,9 +96,9 @@ SCREE_FN scree_box scree_overlap_gather_corners(scree_overlap_slice *slice, int3
         if (body->num_inside == 0) continue;
         for (int32_t v = 0; v < body->num_vertices; ++v)
         {
-            if (body->inside[v] == 0 || (!is_one && body->patch[v] != patch)) continue;
-            slice->corners[num++] = body->points[v];
-            box = scree_box_with_point(box, body->points[v]);
+            if (body->vertices[v].inside == 0 || (!is_one && body->vertices[v].patch != patch)) continue;
+            slice->corners[num++] = body->vertices[v].point;
+            box = scree_box_with_point(box, body->vertices[v].point);
         }
     }
     slice->num_corners = num;
@@ -152,6 +152,7 @@ SCREE_FN void scree_overlap_sum_intervals(scree_overlap_slice *slice, int32_t si
     scree_overlap_body *body = slice->body + side;
     for (int32_t t = 0; t < body->num_triangles; ++t)
     {
+        if (!body->kept[t].is_finished) continue;
         for (int32_t k = 0; k < 3; ++k)
         {
             scree_interval_walk walk;
@@ -169,7 +170,7 @@ SCREE_FN void scree_overlap_sum_intervals(scree_overlap_slice *slice, int32_t si
                 if (slice->num_patches > 1 && *scree_overlap_patch_of(slice, interval.corner[0]) != patch) continue;
                 const scree_vec3 x = scree_vec3_sub(interval.point[0], sums->middle);
                 const scree_vec3 y = scree_vec3_sub(interval.point[1], sums->middle);
-                scree_overlap_add_edge(sums, x, y, body->triangles + t, body->triangles + right,
+                scree_overlap_add_edge(sums, x, y, body->triangles + t, scree_overlap_finish(body, right),
                                        scree_vec3_cross(x, y));
             }
         }
@@ -188,7 +189,7 @@ SCREE_FN void scree_overlap_sum_faces(scree_overlap_slice *slice, scree_overlap_
         for (int32_t t = 0; t < body->num_triangles; ++t)
         {
             const scree_overlap_triangle *triangle = body->triangles + t;
-            if (!triangle->has_foot) continue;
+            if (!body->kept[t].is_finished || !triangle->has_foot) continue;
             const scree_real six_volume = scree_vec3_dot(triangle->foot, triangle->boundary);
             sums->moment = scree_vec3_add_scaled(sums->moment, triangle->foot, six_volume);
             const scree_real n2 = scree_vec3_dot(triangle->face.normal, triangle->face.normal);

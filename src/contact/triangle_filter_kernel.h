@@ -1,31 +1,17 @@
 /// \file triangle_filter_kernel.h
 /// Triangles of two bodies that can take part in their overlap. A lies below B along z of the working frame.
 ///
-/// A triangle of B is kept if its columns meet A's box in x and y, it reaches below A's top, and it reaches into A's
-/// half-space along a direction at most 55 degrees from z; for A the same with below and above exchanged. The bounds in
-/// z have one side only: rays along -z from the vertices of A and along +z from those of B decide what is inside, and
-/// along them the half-spaces are only entered deeper. The tests use the very coordinates that the overlap uses, so
-/// what they drop would have counted zero; only the half-spaces are rounded, and they are wider by more than that.
-///
-/// Each vertex gets a code of the sides of the region on which it is outside (Cohen & Sutherland). A triangle misses
-/// the region exactly if its corners have a side in common.
+/// Each body has a half-space that the other cannot leave: how far the other reaches along a direction at most 55
+/// degrees from z. A triangle counts with the part of it within the half-space, by the box of that part. It is kept if
+/// this box meets the region: the box of what was kept of the other body in x and y, and in z one-sided, since a point
+/// of A inside B has, straight below it, a triangle of B, and along that ray the half-space is only entered deeper.
+/// So a vertex that is outside of the region is outside of the other body, and one within has all its triangles kept.
+/// Boxes are wider by 64 eps L, so that what they drop counts zero in every scheme.
 #ifndef SCREE_TRIANGLE_FILTER_KERNEL_H
 #define SCREE_TRIANGLE_FILTER_KERNEL_H
 
 #include "contact/overlap_frame_kernel.h"
 #include "contact/overlap_parts.h"
-
-/// Sides of a region.
-enum
-{
-    SCREE_OUTSIDE_X = 1 | 2,   ///< lower, upper
-    SCREE_OUTSIDE_Y = 4 | 8,   ///< lower, upper
-    SCREE_OUTSIDE_BELOW = 16,  ///< drops triangles of A only
-    SCREE_OUTSIDE_ABOVE = 32,  ///< drops triangles of B only
-    SCREE_OUTSIDE_BEYOND = 64, ///< of the half-space
-    SCREE_OUTSIDE_A = SCREE_OUTSIDE_X | SCREE_OUTSIDE_Y | SCREE_OUTSIDE_BELOW | SCREE_OUTSIDE_BEYOND,
-    SCREE_OUTSIDE_B = SCREE_OUTSIDE_X | SCREE_OUTSIDE_Y | SCREE_OUTSIDE_ABOVE | SCREE_OUTSIDE_BEYOND
-};
 
 /// What a triangle must reach into: a box, and the half-space direction . v <= reach.
 typedef struct scree_filter_region
@@ -33,7 +19,7 @@ typedef struct scree_filter_region
     scree_box box;
     scree_vec3 direction;
     scree_real reach;
-    int32_t dropping; ///< sides that drop a triangle: SCREE_OUTSIDE_A or SCREE_OUTSIDE_B
+    bool is_of_a; ///< of a body below the other: the box does not bound it from above, else not from below
 } scree_filter_region;
 
 /// A shape seen from the working frame.
@@ -51,18 +37,8 @@ SCREE_FN scree_vec3 scree_posed_vertex(const scree_posed_shape *posed, int32_t v
     return scree_affine(&posed->rows, posed->shape->vertices[v], posed->offset);
 }
 
-/// Sides of the region on which a vertex is outside, and its depth in the half-space.
-SCREE_FN int32_t scree_filter_outcode(const scree_filter_region *region, scree_vec3 p, scree_real *depth)
-{
-    const scree_vec3 lower = region->box.lower;
-    const scree_vec3 upper = region->box.upper;
-    *depth = region->reach - scree_vec3_dot(region->direction, p);
-    return (int32_t)(p.x < lower.x) | (int32_t)(p.x > upper.x) << 1 | (int32_t)(p.y < lower.y) << 2 |
-           (int32_t)(p.y > upper.y) << 3 | (int32_t)(p.z < lower.z) << 4 | (int32_t)(p.z > upper.z) << 5 |
-           (int32_t)(*depth < 0) << 6;
-}
-
-/// All vertices into the working frame, in the order of the shape. Returns the largest direction . v.
+/// All vertices into the working frame, in the order of the shape. Returns the largest direction . v; the depths are
+/// -direction . v until the reach of the half-space is known.
 SCREE_FN scree_real scree_filter_load_all(scree_overlap_body *body, const scree_posed_shape *posed,
                                           scree_vec3 direction)
 {
@@ -70,38 +46,31 @@ SCREE_FN scree_real scree_filter_load_all(scree_overlap_body *body, const scree_
     scree_real most = -SCREE_REAL_MAX;
     for (int32_t v = 0; v < num; ++v)
     {
-        const scree_vec3 p = scree_posed_vertex(posed, v);
-        body->points[v] = p;
-        body->vertex_id[v] = v;
-        most = scree_max(most, scree_vec3_dot(direction, p));
+        scree_overlap_vertex *vertex = body->vertices + v;
+        vertex->point = scree_posed_vertex(posed, v);
+        vertex->id = v;
+        vertex->depth = scree_vec3_dot(direction, vertex->point);
+        most = scree_max(most, vertex->depth);
     }
     body->num_vertices = num;
     return most;
 }
 
-/// Does a box miss the region? Asked of the sides that drop.
-SCREE_FN bool scree_filter_box_is_outside(const scree_filter_region *region, const scree_box *box)
+/// Does a box miss the region?
+SCREE_FN bool scree_filter_misses(const scree_filter_region *region, const scree_box *box)
 {
-    const scree_vec3 lower = region->box.lower;
-    const scree_vec3 upper = region->box.upper;
-    const int32_t outside = (int32_t)(box->upper.x < lower.x) | (int32_t)(box->lower.x > upper.x) << 1 |
-                            (int32_t)(box->upper.y < lower.y) << 2 | (int32_t)(box->lower.y > upper.y) << 3 |
-                            (int32_t)(box->upper.z < lower.z) << 4 | (int32_t)(box->lower.z > upper.z) << 5;
-    return (outside & region->dropping) != 0;
+    const int32_t misses_sideways =
+        (int32_t)(box->upper.x < region->box.lower.x) | (int32_t)(box->lower.x > region->box.upper.x) |
+        (int32_t)(box->upper.y < region->box.lower.y) | (int32_t)(box->lower.y > region->box.upper.y);
+    const int32_t misses =
+        region->is_of_a ? (int32_t)(box->upper.z < region->box.lower.z) : (int32_t)(box->lower.z > region->box.upper.z);
+    return (misses_sideways | misses) != 0;
 }
 
-/// Sides on which all three corners are outside.
-SCREE_FN int32_t scree_filter_common_sides(const scree_overlap_body *body, const int32_t *v)
+/// Keeps triangles of a loaded body that reach into the half-space.
+SCREE_FN void scree_filter_all(scree_overlap_body *body, const scree_shape_view *shape)
 {
-    return body->outcode[v[0]] & body->outcode[v[1]] & body->outcode[v[2]];
-}
-
-/// Keeps triangles of a loaded body.
-SCREE_FN void scree_filter_all(scree_overlap_body *body, const scree_shape_view *shape,
-                               const scree_filter_region *region)
-{
-    for (int32_t v = 0; v < body->num_vertices; ++v)
-        body->outcode[v] = scree_filter_outcode(region, body->points[v], body->depth + v);
+    const scree_overlap_vertex *vertices = body->vertices;
     int32_t num = 0;
     for (int32_t id = 0; id < shape->num_triangles; ++id)
     {
@@ -112,7 +81,8 @@ SCREE_FN void scree_filter_all(scree_overlap_body *body, const scree_shape_view 
         kept->v[1] = v[1];
         kept->v[2] = v[2];
         kept->id = id;
-        num += (scree_filter_common_sides(body, v) & region->dropping) == 0;
+        num += (int32_t)(vertices[v[0]].depth >= 0) | (int32_t)(vertices[v[1]].depth >= 0) |
+               (int32_t)(vertices[v[2]].depth >= 0);
     }
     body->num_triangles = num;
 }
@@ -123,11 +93,12 @@ SCREE_FN int32_t scree_filter_vertex(scree_overlap_body *body, const scree_posed
 {
     // a slot is true only if the vertex it leads to says so too, so slots need no clearing
     const int32_t slot = body->vertex_slot[v];
-    if (slot < body->num_vertices && body->vertex_id[slot] == v) return slot;
+    if (slot < body->num_vertices && body->vertices[slot].id == v) return slot;
     const int32_t added = body->num_vertices++;
-    body->points[added] = scree_posed_vertex(posed, v);
-    body->outcode[added] = scree_filter_outcode(region, body->points[added], body->depth + added);
-    body->vertex_id[added] = v;
+    scree_overlap_vertex *vertex = body->vertices + added;
+    vertex->point = scree_posed_vertex(posed, v);
+    vertex->depth = region->reach - scree_vec3_dot(region->direction, vertex->point);
+    vertex->id = v;
     body->vertex_slot[v] = added;
     return added;
 }
@@ -138,8 +109,8 @@ SCREE_FN scree_filter_region scree_filter_in_body(const scree_posed_shape *posed
 {
     // the one-sided bound in z goes as far as the body itself
     scree_box box = region->box;
-    if ((region->dropping & SCREE_OUTSIDE_BELOW) == 0) box.lower.z = body_box.lower.z;
-    if ((region->dropping & SCREE_OUTSIDE_ABOVE) == 0) box.upper.z = body_box.upper.z;
+    if (region->is_of_a) box.upper.z = body_box.upper.z;
+    else box.lower.z = body_box.lower.z;
     const scree_mat3 *m = &posed->rows;
     const scree_real scale2 = scree_vec3_dot(m->row[0], m->row[0]);
     const scree_vec3 middle = scree_vec3_sub(scree_box_middle(box), posed->offset);
@@ -163,11 +134,12 @@ SCREE_FN scree_filter_region scree_filter_in_body(const scree_posed_shape *posed
     const scree_vec3 d = region->direction;
     turned.reach = region->reach - scree_vec3_dot(d, posed->offset) +
                    rounding * (scree_abs(d.x) + scree_abs(d.y) + scree_abs(d.z));
-    turned.dropping = region->dropping;
+    turned.is_of_a = region->is_of_a;
     return turned;
 }
 
-/// Keeps triangles through the tree; `body_box` is the box of the whole body. False if the buffers are too small.
+/// Keeps triangles through the tree that reach into the half-space and may meet the box; `body_box` is the box of the
+/// whole body. False if the buffers are too small.
 SCREE_FN bool scree_filter_tree(scree_overlap_body *body, const scree_posed_shape *posed,
                                 const scree_filter_region *region, scree_box body_box)
 {
@@ -178,86 +150,108 @@ SCREE_FN bool scree_filter_tree(scree_overlap_body *body, const scree_posed_shap
     scree_wide_walk walk;
     scree_wide_walk_start(&shape->wide_tree, &query, &walk);
     body->num_vertices = 0;
-    body->num_triangles = 0;
-    uint32_t found;
+    int32_t num = 0;
     for (;;)
     {
+        uint32_t found;
         const int32_t node = scree_wide_walk_next(&shape->wide_tree, &query, &walk, &found);
+        body->num_triangles = num;
         if (node < 0) return true;
-        if (body->num_triangles + SCREE_WIDE_CHILDREN > body->max_triangles ||
+        if (num + SCREE_WIDE_CHILDREN > body->max_triangles ||
             body->num_vertices + 3 * SCREE_WIDE_CHILDREN > body->max_vertices)
             return false;
         for (; found != 0; found &= found - 1)
         {
-            scree_kept_triangle *kept = body->kept + body->num_triangles;
+            scree_kept_triangle *kept = body->kept + num;
             kept->id = shape->wide_tree.items[SCREE_WIDE_CHILDREN * node + scree_lowest_bit(found)];
+            const int32_t *v = shape->triangles[kept->id].v;
+            int32_t reaches = 0;
             for (int32_t c = 0; c < 3; ++c)
-                kept->v[c] = scree_filter_vertex(body, posed, region, shape->triangles[kept->id].v[c]);
-            body->num_triangles += (scree_filter_common_sides(body, kept->v) & region->dropping) == 0;
+            {
+                kept->v[c] = scree_filter_vertex(body, posed, region, v[c]);
+                reaches |= (int32_t)(body->vertices[kept->v[c]].depth >= 0);
+            }
+            num += reaches;
         }
     }
 }
 
-/// Box of the part of a triangle within the half-space, which at least one of its corners reaches.
-SCREE_FN scree_box scree_filter_clipped_box(const scree_overlap_body *body, const int32_t *v)
+SCREE_FN scree_box scree_box_of_points(scree_vec3 a, scree_vec3 b, scree_vec3 c)
 {
-    const int32_t outs = (int32_t)(body->depth[v[0]] < 0) | (int32_t)(body->depth[v[1]] < 0) << 1 |
-                         (int32_t)(body->depth[v[2]] < 0) << 2;
-    scree_box box = scree_box_empty();
-    for (int32_t k = 0; k < 3; ++k)
-        if ((outs >> k & 1) == 0) box = scree_box_with_point(box, body->points[v[k]]);
-    if (outs == 0) return box;
-    // the corner alone on its side, and the two places where the sides from there leave the half-space
-    const int32_t lone = 0x690 >> (2 * outs) & 3;
-    for (int32_t turn = 1; turn < 3; ++turn)
-    {
-        const int32_t other = lone + turn < 3 ? lone + turn : lone + turn - 3;
-        const scree_real depth = body->depth[v[lone]];
-        const scree_real part = depth / (depth - body->depth[v[other]]);
-        const scree_vec3 start = body->points[v[lone]];
-        box = scree_box_with_point(box,
-                                   scree_vec3_add_scaled(start, scree_vec3_sub(body->points[v[other]], start), part));
-    }
+    scree_box box;
+    box.lower = scree_vec3_min(scree_vec3_min(a, b), c);
+    box.upper = scree_vec3_max(scree_vec3_max(a, b), c);
     return box;
+}
+
+/// Box of the part of a triangle within the half-space, which at least one of its corners reaches.
+SCREE_FN scree_box scree_filter_clipped_box(const scree_overlap_vertex *vertices, const int32_t *v)
+{
+    const int32_t outs = (int32_t)(vertices[v[0]].depth < 0) | (int32_t)(vertices[v[1]].depth < 0) << 1 |
+                         (int32_t)(vertices[v[2]].depth < 0) << 2;
+    if (outs == 0) return scree_box_of_points(vertices[v[0]].point, vertices[v[1]].point, vertices[v[2]].point);
+    // the corner alone on its side, and the two places where the sides from there leave the half-space
+    const int32_t lone = scree_lone_corner(outs);
+    const scree_overlap_vertex *from = vertices + v[lone];
+    const scree_overlap_vertex *next = vertices + v[scree_next_corner(lone)];
+    const scree_overlap_vertex *last = vertices + v[scree_corner_before(lone)];
+    const scree_vec3 at_next = scree_vec3_add_scaled(from->point, scree_vec3_sub(next->point, from->point),
+                                                     from->depth / (from->depth - next->depth));
+    const scree_vec3 at_last = scree_vec3_add_scaled(from->point, scree_vec3_sub(last->point, from->point),
+                                                     from->depth / (from->depth - last->depth));
+    if (from->depth >= 0) return scree_box_of_points(from->point, at_next, at_last);
+    scree_box box = scree_box_of_points(at_next, at_last, next->point);
+    return scree_box_with_point(box, last->point);
 }
 
 /// Boxes of the kept triangles, clipped to the half-space; drops those that do not reach into the region with it.
 SCREE_FN void scree_filter_clip(scree_overlap_body *body, const scree_filter_region *region, scree_real margin)
 {
+    const scree_vec3 margins = scree_vec3_make(margin, margin, margin);
     scree_box all = scree_box_empty();
     int32_t num = 0;
     for (int32_t t = 0; t < body->num_triangles; ++t)
     {
         const scree_kept_triangle kept = body->kept[t];
-        scree_box box = scree_filter_clipped_box(body, kept.v);
-        box.lower = scree_vec3_make(box.lower.x - margin, box.lower.y - margin, box.lower.z - margin);
-        box.upper = scree_vec3_make(box.upper.x + margin, box.upper.y + margin, box.upper.z + margin);
-        if (scree_filter_box_is_outside(region, &box)) continue;
+        scree_box box = scree_filter_clipped_box(body->vertices, kept.v);
+        box.lower = scree_vec3_sub(box.lower, margins);
+        box.upper = scree_vec3_add(box.upper, margins);
+        if (scree_filter_misses(region, &box)) continue;
         body->kept[num] = kept;
         body->triangle_boxes[num++] = box;
         all = scree_box_union(all, box);
     }
     body->num_triangles = num;
     body->box = all;
+    body->region = region->box;
 }
 
-/// Codes the vertices for a smaller region, with the same half-space, and drops triangles that do not reach into it.
+/// Drops triangles that do not reach into a smaller region with the same half-space.
 SCREE_FN void scree_filter_again(scree_overlap_body *body, const scree_filter_region *region)
 {
-    for (int32_t v = 0; v < body->num_vertices; ++v)
-        body->outcode[v] = scree_filter_outcode(region, body->points[v], body->depth + v);
     scree_box all = scree_box_empty();
     int32_t num = 0;
     for (int32_t t = 0; t < body->num_triangles; ++t)
     {
         const scree_box box = body->triangle_boxes[t];
-        if (scree_filter_box_is_outside(region, &box)) continue;
+        if (scree_filter_misses(region, &box)) continue;
         body->kept[num] = body->kept[t];
         body->triangle_boxes[num++] = box;
         all = scree_box_union(all, box);
     }
     body->num_triangles = num;
     body->box = all;
+    body->region = region->box;
+}
+
+/// Is a vertex of the body beyond doubt outside the other?
+SCREE_FN bool scree_filter_is_outside(const scree_overlap_body *body, bool is_of_a, const scree_overlap_vertex *vertex)
+{
+    const scree_vec3 p = vertex->point;
+    const scree_box *region = &body->region;
+    const int32_t beyond = is_of_a ? (int32_t)(p.z < region->lower.z) : (int32_t)(p.z > region->upper.z);
+    return ((int32_t)(vertex->depth < 0) | (int32_t)(p.x < region->lower.x) | (int32_t)(p.x > region->upper.x) |
+            (int32_t)(p.y < region->lower.y) | (int32_t)(p.y > region->upper.y) | beyond) != 0;
 }
 
 /// Room for this shape? Sets slice->lack if not.
@@ -273,37 +267,44 @@ SCREE_FN bool scree_filter_has_room(scree_overlap_slice *slice, int32_t side, co
     return slice->lack == SCREE_LACK_NOTHING;
 }
 
-/// All kept triangles with what is derived from their corners.
-SCREE_FN void scree_filter_finish(scree_overlap_body *body)
+/// No triangle is finished, all can be found by their id.
+SCREE_FN void scree_filter_enter(scree_overlap_body *body)
 {
     for (int32_t t = 0; t < body->num_triangles; ++t)
     {
-        const scree_kept_triangle kept = body->kept[t];
-        scree_overlap_triangle *triangle = body->triangles + t;
-        const scree_vec3 p0 = body->points[kept.v[0]];
-        const scree_vec3 p1 = body->points[kept.v[1]];
-        const scree_vec3 p2 = body->points[kept.v[2]];
-        triangle->id = kept.id;
-        triangle->has_foot = false;
-        for (int32_t k = 0; k < 3; ++k)
-        {
-            triangle->v[k] = kept.v[k];
-            triangle->crossing[k] = -1;
-        }
-        triangle->face.p[0] = p0;
-        triangle->face.p[1] = p1;
-        triangle->face.p[2] = p2;
-        triangle->face.normal = scree_vec3_cross(scree_vec3_sub(p1, p0), scree_vec3_sub(p2, p0));
-        triangle->face.offset = scree_vec3_dot(triangle->face.normal, p0);
-        const int32_t id0 = body->vertex_id[kept.v[0]];
-        const int32_t id1 = body->vertex_id[kept.v[1]];
-        const int32_t id2 = body->vertex_id[kept.v[2]];
-        triangle->face.reversed = (int32_t)(id0 > id1) | (int32_t)(id1 > id2) << 1 | (int32_t)(id2 > id0) << 2;
-        const scree_vec3 lower = scree_vec3_min(scree_vec3_min(p0, p1), p2);
-        const scree_vec3 upper = scree_vec3_max(scree_vec3_max(p0, p1), p2);
-        triangle->face.size = upper.x - lower.x + (upper.y - lower.y) + (upper.z - lower.z);
-        body->triangle_slot[kept.id] = t;
+        body->kept[t].is_finished = false;
+        body->triangle_slot[body->kept[t].id] = t;
     }
+}
+
+/// A kept triangle with what is derived from its corners, made when it is asked for first.
+SCREE_FN scree_overlap_triangle *scree_overlap_finish(scree_overlap_body *body, int32_t t)
+{
+    scree_kept_triangle *kept = body->kept + t;
+    scree_overlap_triangle *triangle = body->triangles + t;
+    if (kept->is_finished) return triangle;
+    kept->is_finished = true;
+    const scree_overlap_vertex *v0 = body->vertices + kept->v[0];
+    const scree_overlap_vertex *v1 = body->vertices + kept->v[1];
+    const scree_overlap_vertex *v2 = body->vertices + kept->v[2];
+    triangle->id = kept->id;
+    triangle->has_foot = false;
+    triangle->v[0] = kept->v[0];
+    triangle->v[1] = kept->v[1];
+    triangle->v[2] = kept->v[2];
+    triangle->crossing[0] = -1;
+    triangle->crossing[1] = -1;
+    triangle->crossing[2] = -1;
+    scree_face *face = &triangle->face;
+    face->p[0] = v0->point;
+    face->p[1] = v1->point;
+    face->p[2] = v2->point;
+    face->normal = scree_vec3_cross(scree_vec3_sub(v1->point, v0->point), scree_vec3_sub(v2->point, v0->point));
+    face->offset = scree_vec3_dot(face->normal, v0->point);
+    face->reversed = (int32_t)(v0->id > v1->id) | (int32_t)(v1->id > v2->id) << 1 | (int32_t)(v2->id > v0->id) << 2;
+    const scree_box box = scree_box_of_points(v0->point, v1->point, v2->point);
+    face->size = box.upper.x - box.lower.x + (box.upper.y - box.lower.y) + (box.upper.z - box.lower.z);
+    return triangle;
 }
 
 #endif

@@ -9,12 +9,11 @@
 typedef enum faulty_kind
 {
     FAULTY_NONE,
-    FAULTY_MISSED,         ///< an edge passes through a triangle, but is said not to
-    FAULTY_FLIPPED,        ///< it enters and is said to leave, or the other way round
-    FAULTY_INVENTED,       ///< it misses the triangle, but is said to pass in its middle
-    FAULTY_SHIFTED,        ///< the point of a crossing is off by a hundredth of the edge
-    FAULTY_INSIDE_MISSED,  ///< one triangle above or below a vertex is not counted
-    FAULTY_INSIDE_INVENTED ///< one triangle is counted that is not there
+    FAULTY_MISSED,   ///< an edge passes through a triangle, but is said not to
+    FAULTY_FLIPPED,  ///< it enters and is said to leave, or the other way round
+    FAULTY_INVENTED, ///< it misses the triangle, but is said to pass in its middle
+    FAULTY_SHIFTED,  ///< the point of a crossing is off by a hundredth of the edge
+    FAULTY_OUTSIDE   ///< a vertex that may be inside is said to be outside
 } faulty_kind;
 
 typedef struct faulty_state
@@ -22,7 +21,11 @@ typedef struct faulty_state
     faulty_kind kind;
     int64_t place;                     ///< which of the decisions that the kind applies to
     int64_t num_crossings, num_misses; ///< decisions met, by their true answer
-    int64_t num_counted, num_uncounted;
+    int64_t num_not_outside;
+    bool has_key;           ///< a decision about an edge and a triangle has been spoilt:
+    scree_vec3 key[5];      ///< the ends of the edge and the corners of the triangle,
+    int32_t given;          ///< the answer that was given
+    scree_vec3 given_point; ///< and will be given to the same question again
 } faulty_state;
 
 extern faulty_state faulty; ///< one thread only

@@ -44,10 +44,8 @@ int64_t num_places(faulty_kind kind, const faulty_state &counts)
     {
     case FAULTY_INVENTED:
         return counts.num_misses;
-    case FAULTY_INSIDE_MISSED:
-        return counts.num_counted;
-    case FAULTY_INSIDE_INVENTED:
-        return counts.num_uncounted;
+    case FAULTY_OUTSIDE:
+        return counts.num_not_outside;
     default:
         return counts.num_crossings;
     }
@@ -98,11 +96,10 @@ int main(int argc, char **argv)
 {
     const Arguments arguments = read_arguments(argc, argv);
     const int num_poses = arguments.num_poses > 0 ? arguments.num_poses : 200;
-    static const char *const names[] = {"none",    "missed",        "flipped",        "invented",
-                                        "shifted", "inside missed", "inside invented"};
+    static const char *const names[] = {"none", "missed", "flipped", "invented", "shifted", "outside"};
     std::printf("%-16s %6s %6s %8s %22s %22s\n", "fault", "runs", "wrong", "noticed", "worst not noticed",
                 "wrong after fallback");
-    for (int kind = FAULTY_MISSED; kind <= FAULTY_INSIDE_INVENTED; ++kind)
+    for (int kind = FAULTY_MISSED; kind <= FAULTY_OUTSIDE; ++kind)
     {
         const Tally tally = spoil(faulty_kind(kind), num_poses);
         std::printf("%-16s %6d %6d %7.2f%% %22.3g %22d\n", names[kind], tally.num_runs, tally.num_wrong,

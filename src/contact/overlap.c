@@ -126,6 +126,5 @@ int32_t scree_overlap_compute(const scree_shape_view *a, const scree_pose *pose_
     pair.shape[1] = b;
     pair.pose[0] = pose_a;
     pair.pose[1] = pose_b;
-    results[0] = scree_overlap_pair_compute(&pair, options, &workspace->slice);
-    return 1;
+    return scree_overlap_pair_compute(&pair, options, &workspace->slice, results, max_results);
 }

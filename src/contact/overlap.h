@@ -24,20 +24,22 @@ typedef enum scree_overlap_scheme
 typedef struct scree_overlap_options
 {
     scree_overlap_scheme scheme;
-    bool separate_patches; ///< reserved: leave it false
+    bool separate_patches; ///< connected pieces of the overlap as contacts of their own, instead of one for all
     bool use_convex_path;  ///< no effect yet: convex shapes take the general path
 } scree_overlap_options;
 
 /// One contact between bodies A and B, in world axes.
 typedef struct scree_overlap_result
 {
-    scree_real volume;      ///< [m^3]
-    scree_vec3 area_vector; ///< [m^2] sum of area times outward normal over the part of A's surface inside B
-    scree_vec3 arm;         ///< [m] centroid of the overlap minus the position of A
-    scree_vec3 normal;      ///< [1] area vector over its length: out of A, into B
-    scree_real indentation; ///< [m] extent of the overlap along the normal
-    scree_real radius;      ///< [m] largest distance of a point of the overlap from the centroid, across the normal
-    scree_real residual;    ///< [1] certificate: |S_A + S_B| over the area, from the faces' own normals
+    scree_real volume;        ///< [m^3]
+    scree_vec3 area_vector;   ///< [m^2] sum of area times outward normal over the part of A's surface inside B
+    scree_vec3 torque_vector; ///< [m^3] integral of x cross n over the same part of A's surface, x from the centroid
+    scree_vec3 arm;           ///< [m] centroid of the overlap minus the position of A
+    scree_vec3 normal;        ///< [1] area vector over its length: out of A, into B
+    scree_real indentation;   ///< [m] extent of the overlap along the normal
+    scree_real radius;        ///< [m] largest distance of a point of the overlap from the centroid, across the normal
+    scree_real residual;      ///< [1] certificate: |S_A + S_B| over the area, from the faces' own normals;
+                              ///< 1 if the crossings do not close
     scree_overlap_status status;
     bool used_fallback; ///< the certificate made the filtered scheme repeat with the hierarchy
 } scree_overlap_result;
@@ -49,9 +51,10 @@ scree_overlap_workspace *scree_overlap_workspace_create(void); ///< NULL: out of
 scree_status scree_overlap_workspace_grow(scree_overlap_workspace *workspace);
 void scree_overlap_workspace_destroy(scree_overlap_workspace *workspace);
 
-/// Overlap of body A (a at pose_a) and body B. `results` is (max_results); returns the number of results, at least 0
-/// (1 without separate patches, with status NONE where nothing overlaps). A and B may be swapped: the area vector and
-/// the normal change sign, nothing else changes beyond rounding.
+/// Overlap of body A (a at pose_a) and body B. `results` is (max_results); returns the number of results, at least 1
+/// unless max_results is 0: one, with status NONE where nothing overlaps, or with separate patches one per piece, of
+/// which the first max_results are written. A and B may be swapped: area, torque and normal change sign, nothing else
+/// changes beyond rounding, except the order of patches.
 int32_t scree_overlap_compute(const scree_shape_view *a, const scree_pose *pose_a, const scree_shape_view *b,
                               const scree_pose *pose_b, const scree_overlap_options *options,
                               scree_overlap_workspace *workspace, scree_overlap_result *results, int32_t max_results);

@@ -5,6 +5,7 @@
 
 #include "contact/overlap_crossings_kernel.h"
 #include "contact/overlap_direction_kernel.h"
+#include "contact/overlap_patches_kernel.h"
 #include "contact/overlap_sums_kernel.h"
 #include "contact/separation_kernel.h"
 #include "contact/triangle_filter_kernel.h"
@@ -172,6 +173,7 @@ SCREE_FN scree_overlap_result scree_overlap_nothing(scree_overlap_status status)
     scree_overlap_result result;
     result.volume = 0;
     result.area_vector = scree_vec3_zero();
+    result.torque_vector = scree_vec3_zero();
     result.arm = scree_vec3_zero();
     result.normal = scree_vec3_zero();
     result.indentation = 0;
@@ -213,6 +215,11 @@ SCREE_FN scree_overlap_result scree_overlap_to_world(const scree_overlap_slice *
     result.arm = scree_vec3_scale(scree_mat3_apply(rotation, arm), scale);
     const scree_vec3 area_vector = scree_mat3_apply(rotation, scree_frame_turn_back(&setup->frame, sums->area_vector));
     result.area_vector = scree_vec3_scale(area_vector, scale * scale / 2);
+    const scree_vec3 twice_turned = scree_vec3_cross(scree_vec3_sub(sums->middle, centre), sums->area_vector);
+    const scree_vec3 torque =
+        scree_vec3_add_scaled(scree_vec3_scale(twice_turned, (scree_real)0.5), sums->torque, (scree_real)(-1.0 / 6));
+    result.torque_vector = scree_vec3_scale(scree_mat3_apply(rotation, scree_frame_turn_back(&setup->frame, torque)),
+                                            scale * scale * scale);
     result.status = SCREE_OVERLAP_NO_NORMAL;
     if (!scree_overlap_has_normal(setup, sums)) return result;
 
@@ -224,36 +231,61 @@ SCREE_FN scree_overlap_result scree_overlap_to_world(const scree_overlap_slice *
     return result;
 }
 
-/// Overlap of a pair as one result.
-SCREE_FN scree_overlap_result scree_overlap_pair_compute(const scree_overlap_pair *pair,
-                                                         const scree_overlap_options *options,
-                                                         scree_overlap_slice *slice)
+/// Kept triangles, crossings and sums of all, by the default scheme and once more by the hierarchy if its certificate
+/// says so. The status is TOUCHING if there is something, whatever it is.
+SCREE_FN scree_overlap_status scree_overlap_find(const scree_overlap_pair *pair, const scree_overlap_options *options,
+                                                 scree_overlap_slice *slice, scree_overlap_setup *setup,
+                                                 scree_overlap_sums *sums, bool *used_fallback)
 {
     slice->lack = SCREE_LACK_NOTHING;
-    scree_overlap_setup setup;
-    if (scree_overlap_spheres_apart(pair) || !scree_overlap_set_up(pair, &setup))
-        return scree_overlap_nothing(SCREE_OVERLAP_NONE);
-    if (!scree_overlap_filter(slice, &setup))
-    {
-        const bool is_full = slice->lack != SCREE_LACK_NOTHING;
-        return scree_overlap_nothing(is_full ? SCREE_OVERLAP_WORKSPACE_FULL : SCREE_OVERLAP_NONE);
-    }
-    scree_overlap_sums sums;
+    *used_fallback = false;
+    if (scree_overlap_spheres_apart(pair) || !scree_overlap_set_up(pair, setup)) return SCREE_OVERLAP_NONE;
+    if (!scree_overlap_filter(slice, setup))
+        return slice->lack != SCREE_LACK_NOTHING ? SCREE_OVERLAP_WORKSPACE_FULL : SCREE_OVERLAP_NONE;
     scree_overlap_scheme scheme = options->scheme;
-    bool used_fallback = false;
     for (;;)
     {
         scree_overlap_prepare(slice, scheme);
-        if (!scree_overlap_collect(slice, pair->shape)) return scree_overlap_nothing(SCREE_OVERLAP_WORKSPACE_FULL);
+        if (!scree_overlap_collect(slice, pair->shape)) return SCREE_OVERLAP_WORKSPACE_FULL;
         slice->num_patches = 1;
-        scree_overlap_sum(slice, pair->shape, 0, &sums);
-        if (scheme == SCREE_OVERLAP_HIERARCHY || (slice->is_closed && sums.residual <= SCREE_RESIDUAL_LIMIT)) break;
+        scree_overlap_sum(slice, pair->shape, 0, sums);
+        if (!slice->is_closed) sums->residual = scree_max(sums->residual, 1);
+        if (scheme == SCREE_OVERLAP_HIERARCHY || sums->residual <= SCREE_RESIDUAL_LIMIT) return SCREE_OVERLAP_TOUCHING;
         scheme = SCREE_OVERLAP_HIERARCHY;
-        used_fallback = true;
+        *used_fallback = true;
     }
-    scree_overlap_result result = scree_overlap_to_world(slice, &setup, &sums, pair->pose[0]);
-    result.used_fallback = used_fallback;
-    return result;
+}
+
+/// Overlap of a pair: one result, or one per patch, of which the first max_results are written. Returns their number.
+SCREE_FN int32_t scree_overlap_pair_compute(const scree_overlap_pair *pair, const scree_overlap_options *options,
+                                            scree_overlap_slice *slice, scree_overlap_result *results,
+                                            int32_t max_results)
+{
+    scree_overlap_setup setup;
+    scree_overlap_sums sums;
+    bool used_fallback;
+    const scree_overlap_status status = scree_overlap_find(pair, options, slice, &setup, &sums, &used_fallback);
+    results[0] = scree_overlap_nothing(status);
+    if (status != SCREE_OVERLAP_TOUCHING) return 1;
+    const int32_t num_patches = options->separate_patches ? scree_overlap_find_patches(slice, pair->shape) : 1;
+    if (num_patches <= 1)
+    {
+        results[0] = scree_overlap_to_world(slice, &setup, &sums, pair->pose[0]);
+        results[0].used_fallback = used_fallback;
+        return 1;
+    }
+    int32_t num = 0;
+    for (int32_t patch = 0; patch < num_patches; ++patch)
+    {
+        scree_overlap_sum(slice, pair->shape, patch, &sums);
+        scree_overlap_result result = scree_overlap_to_world(slice, &setup, &sums, pair->pose[0]);
+        result.used_fallback = used_fallback;
+        // pieces without volume are noise
+        if (result.status == SCREE_OVERLAP_NONE && num + num_patches - patch > 1) continue;
+        if (num < max_results) results[num] = result;
+        ++num;
+    }
+    return num;
 }
 
 #endif

@@ -26,7 +26,7 @@ SCREE_FN void scree_overlap_pairs_at(scree_overlap_pairs_args a, int64_t p)
         pair.shape[side] = a.bodies.shapes + a.bodies.shape[body[side]];
         pair.pose[side] = a.bodies.pose + body[side];
     }
-    a.results[p] = scree_overlap_pair_compute(&pair, &a.options, a.slices + p);
+    scree_overlap_pair_compute(&pair, &a.options, a.slices + p, a.results + p, 1);
 }
 
 #endif

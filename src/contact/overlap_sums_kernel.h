@@ -4,7 +4,8 @@
 /// from x to y, has a face of the solid on its left and one on its right, whose planes have the feet q of C:
 ///     6 V = sum over edges (q_left - q_right) . (x cross y)
 ///     2 S = sum over segments x cross y
-///     24 M = sum over edges and both of their faces q . (x cross y) (q + x + y)
+///     -6 T = sum over segments (y - x) (x . x + x . y + y . y), T the integral of r cross n over the part of A's
+///     surface 24 M = sum over edges and both of their faces q . (x cross y) (q + x + y)
 /// Each term is a tetrahedron (C, q, x, y), signed; everything is relative to C. The cusps of Franklin & Kankanhalli
 /// (1993), "Volumes from overlaying 3-D triangulations in parallel", are these terms split at the foot of C on the
 /// edge; taken whole they stay accurate where the two faces are nearly parallel, and need no foot on edges.
@@ -25,6 +26,7 @@ typedef struct scree_overlap_sums
     scree_real lost;        ///< what rounding has taken from six_volume so far, until it is added at the end
     scree_vec3 moment;      ///< 24 times the first moment about C
     scree_vec3 area_vector; ///< twice S
+    scree_vec3 torque;      ///< -6 times the integral of x cross n over the part of A's surface, x from C
     scree_real residual;
     scree_real area; ///< of the overlap's surface
 } scree_overlap_sums;
@@ -140,6 +142,8 @@ SCREE_FN void scree_overlap_sum_segments(scree_overlap_slice *slice, int32_t pat
         const scree_vec3 q = scree_vec3_sub(slice->crossings[segment->end[1]].point, sums->middle);
         const scree_vec3 twice_area = scree_vec3_cross(p, q);
         sums->area_vector = scree_vec3_add(sums->area_vector, twice_area);
+        const scree_real squares = scree_vec3_dot(p, p) + scree_vec3_dot(p, q) + scree_vec3_dot(q, q);
+        sums->torque = scree_vec3_add_scaled(sums->torque, scree_vec3_sub(q, p), squares);
         scree_overlap_add_edge(sums, p, q, slice->body[0].triangles + segment->triangle_a,
                                slice->body[1].triangles + segment->triangle_b, twice_area);
     }
@@ -212,10 +216,13 @@ SCREE_FN void scree_overlap_sum(scree_overlap_slice *slice, const scree_shape_vi
     sums->lost = 0;
     sums->moment = scree_vec3_zero();
     sums->area_vector = scree_vec3_zero();
+    sums->torque = scree_vec3_zero();
     sums->residual = 0;
     sums->area = 0;
     sums->middle = scree_vec3_zero();
     if (sums->box.lower.x > sums->box.upper.x) return;
+    for (int32_t side = 0; slice->num_patches > 1 && side < 2; ++side)
+        for (int32_t t = 0; t < slice->body[side].num_triangles; ++t) slice->body[side].triangles[t].has_foot = false;
     sums->middle = scree_vec3_scale(scree_vec3_add(sums->box.lower, sums->box.upper), (scree_real)0.5);
     scree_overlap_sum_segments(slice, patch, sums);
     for (int32_t side = 0; side < 2; ++side) scree_overlap_sum_intervals(slice, side, shape[side], patch, sums);

@@ -92,7 +92,13 @@ static scree_meet_verdict faulty_faces_meet(const scree_face *f, const scree_fac
         *p = *q;
         *q = end;
     }
-    if (faulty.kind == FAULTY_SHIFTED) p->height[0] *= (scree_real)1.02;
+    if (faulty.kind == FAULTY_SHIFTED)
+    {
+        const scree_face *own = p->is_of_b ? g : f;
+        const scree_vec3 along = scree_vec3_sub(own->p[p->corner[1]], own->p[p->corner[0]]);
+        p->point = scree_vec3_add_scaled(scree_segment_end_point(p, own), along, (scree_real)0.01);
+        p->has_point = true;
+    }
     return verdict;
 }
 

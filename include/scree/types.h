@@ -215,8 +215,9 @@ extern "C"
 
     typedef struct scree_solver_def
     {
-        double skin;          ///< [1] share of the mean bounding radius added to the boxes; default 0.1
-        char *overlap_scheme; ///< "filtered" (default) or "hierarchy"
+        double skin;           ///< [1] share of the mean bounding radius added to the boxes; default 0.1
+        char *overlap_scheme;  ///< "filtered" (default) or "hierarchy"
+        bool separate_patches; ///< default false: one contact for all pieces of an overlap
     } scree_solver_def;
 
     typedef struct scree_scene

@@ -19,6 +19,7 @@ static const char usage[] =
     "  --orientation-a W,X,Y,Z  quaternion of A, used as given; likewise --orientation-b\n"
     "  --scale-a S              A times S, before turning and shifting; likewise --scale-b\n"
     "  --scheme NAME            filtered (default) or hierarchy\n"
+    "  --patches                the connected pieces of the overlap one by one, beside their sum\n"
     "  --json                   the result as JSON\n"
     "  --batch CASES            one case a line, \"-\" for standard input:\n"
     "                             {\"id\": \"1\", \"a\": BODY, \"b\": BODY}, BODY one of\n"
@@ -106,6 +107,7 @@ static bool parse_command_line(overlap_request *request, int argc, char **argv)
     {
         const char *argument = argv[i];
         if (strcmp(argument, "--json") == 0) request->is_json = true;
+        else if (strcmp(argument, "--patches") == 0) request->options.separate_patches = true;
         else if (strcmp(argument, "--help") == 0 || strcmp(argument, "-h") == 0) request->wants_help = true;
         else if (takes_value(argument))
         {

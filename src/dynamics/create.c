@@ -237,6 +237,7 @@ static scree_status start(scree_simulation *s, scree_report *report)
     s->counters.smallest_critical_step = INFINITY;
     s->narrow_phase.options.scheme =
         strcmp(s->scene->solver.overlap_scheme, "hierarchy") == 0 ? SCREE_OVERLAP_HIERARCHY : SCREE_OVERLAP_FILTERED;
+    s->narrow_phase.options.separate_patches = s->scene->solver.separate_patches;
     s->narrow_phase.options.use_convex_path = true;
     scree_place_walls(s, 0);
     scree_place_particles(s);

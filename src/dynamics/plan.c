@@ -40,8 +40,8 @@ static size_t print_narrow_phase(const scree_simulation *s, FILE *out)
     if (has_meshes)
     {
         char text[96];
-        snprintf(text, sizeof text, "polyhedra: exact overlap, %s scheme, a contact per pair",
-                 s->scene->solver.overlap_scheme);
+        snprintf(text, sizeof text, "polyhedra: exact overlap, %s scheme, a contact per %s",
+                 s->scene->solver.overlap_scheme, s->scene->solver.separate_patches ? "patch" : "pair");
         print_stage(out, stage, text, bytes_mesh_pair, "pair");
         stage = "";
         largest = bytes_mesh_pair;

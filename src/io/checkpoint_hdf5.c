@@ -91,6 +91,7 @@ static uint64_t scene_hash(const scree_simulation *simulation)
     hash = hash_number(hash, simulation->time_step);
     const char *scheme = scene->solver.overlap_scheme != NULL ? scene->solver.overlap_scheme : "";
     hash = scree_hash_bytes(hash, scheme, strlen(scheme) + 1);
+    hash = hash_number(hash, scene->solver.separate_patches);
     for (int32_t k = 0; k < simulation->num_materials * simulation->num_materials; ++k)
         hash = hash_law(hash, simulation->laws + k);
     for (int32_t k = 0; k < 2 * simulation->num_shapes; ++k) hash = hash_shape(hash, simulation->shape_views + k);

@@ -482,7 +482,8 @@ static const scree_scene_section wall_section = {
 
 static const char *const overlap_schemes[] = {"filtered", "hierarchy"};
 static const cyaml_schema_field_t solver_fields[] = {NUMBER(scree_solver_def, skin),
-                                                     TEXT(scree_solver_def, overlap_scheme), CYAML_FIELD_END};
+                                                     TEXT(scree_solver_def, overlap_scheme),
+                                                     TRUTH(scree_solver_def, separate_patches), CYAML_FIELD_END};
 static const scree_scene_key solver_keys[] = {
     {.name = "skin",
      .unit = "1",
@@ -497,6 +498,10 @@ static const scree_scene_key solver_keys[] = {
      .words = overlap_schemes,
      .num_words = COUNT(overlap_schemes),
      .meaning = "filtered: plain signs where they clear their margin; hierarchy: the consistent decisions everywhere"},
+    {.name = "separate_patches",
+     .default_text = "false",
+     .meaning = "whether the connected pieces of the overlap of two polyhedra are contacts of their own, each with its "
+                "force and history; false: one contact for all of them, as Bilock (2020)"},
 };
 static const scree_scene_section solver_section = {"solver", "How contacts are found.", solver_fields, solver_keys,
                                                    COUNT(solver_keys)};

@@ -50,6 +50,30 @@ def test_shifted_boxes_of_a_batch():
         assert r["residual"] < 1e-6
 
 
+def joined(*bodies):
+    """Disjoint bodies as one."""
+    whole = {"vertices": [], "triangles": []}
+    for body in bodies:
+        first = len(whole["vertices"])
+        whole["vertices"] += body["vertices"]
+        whole["triangles"] += [[first + i for i in t] for t in body["triangles"]]
+    return whole
+
+
+def test_patches():
+    legs = joined(box((0, 0, 0), (1, 1, 2)), box((3, 0, 0.25), (5, 1, 2)))
+    case = {"id": "legs", "a": legs, "b": box((-1, -1, -1), (6, 2, 0.5))}
+    done, (r,) = batch([case], "--patches")
+    assert done.returncode == 0 and len(r["patches"]) == 2
+    left, right = sorted(r["patches"], key=lambda p: p["centroid"][0])
+    assert left["volume"] == pytest.approx(0.5, abs=1e-14) and right["volume"] == pytest.approx(0.5, abs=1e-14)
+    assert left["centroid"] == pytest.approx([0.5, 0.5, 0.25], abs=1e-12)
+    assert right["centroid"] == pytest.approx([4, 0.5, 0.375], abs=1e-12)
+    assert left["indentation"] == pytest.approx(0.5, abs=1e-12) and right["indentation"] == pytest.approx(0.25, abs=1e-12)
+    _, (merged,) = batch([case])
+    assert "patches" not in merged and merged["volume"] == pytest.approx(r["volume"], abs=1e-14)
+
+
 def test_numbers_have_17_digits():
     third = 1.0 / 3.0
     _, (r,) = batch([{"id": 1, "a": box((0, 0, 0), (1, 1, 1)), "b": box((third, third, third), (2, 2, 2))}])

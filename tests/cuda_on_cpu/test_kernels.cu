@@ -118,6 +118,11 @@ static const scree_shape_view *shapes_on(side &where)
         view.triangles = where.copy(view.triangles, view.num_triangles);
         view.neighbours = where.copy(view.neighbours, 3 * (int64_t)view.num_triangles);
         view.tree = tree_on(where, view.tree);
+        scree_wide_tree_view &wide = view.wide_tree;
+        if (wide.nodes == nullptr) continue;
+        wide.nodes = where.copy(wide.nodes, wide.first_node[wide.num_levels - 1] + 1);
+        wide.items = where.copy(wide.items, wide.num_items);
+        view.support_map = where.copy(view.support_map, SCREE_SUPPORT_VALUES);
     }
     return where.copy(views.data(), (int64_t)views.size());
 }

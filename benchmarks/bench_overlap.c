@@ -98,8 +98,9 @@ static int compare(const void *a, const void *b)
 }
 
 /// Median time of one call in microseconds.
-static __attribute__((noinline)) double time_pairs(const scree_shape *shape, const bench_pairs *pairs, const scree_overlap_options *options,
-                         scree_overlap_workspace *workspace)
+static __attribute__((noinline)) double time_pairs(const scree_shape *shape, const bench_pairs *pairs,
+                                                   const scree_overlap_options *options,
+                                                   scree_overlap_workspace *workspace)
 {
     double times[9];
     for (int repeat = 0; repeat < 9; ++repeat)

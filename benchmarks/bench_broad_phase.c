@@ -65,7 +65,8 @@ static void measure_once(scree_broad_phase *broad_phase, const scree_broad_phase
     const double whole = now() - start;
     stop_unless(scree_sort_reserve(keys, broad_phase->num_pairs, false) == SCREE_OK);
     int64_t num_keys = 0, num_plain_keys = 0;
-    scree_particle_pairs_args args = {broad_phase->tree.view, {keys->keys, &num_keys, keys->max_items, 31}};
+    scree_particle_pairs_args args = {
+        broad_phase->tree.view, {keys->keys, &num_keys, keys->max_items, 31}, input->centres, input->radii};
     const double begin = now();
     stop_unless(scree_lbvh_build(&broad_phase->tree, input->boxes, input->num_particles) == SCREE_OK);
     const double built = now();

@@ -63,14 +63,21 @@ scree_status scree_mesh_generate(scree_mesh *mesh, const char *specification, sc
     double values[MAX_VALUES];
     const size_t length = strcspn(specification, ":");
     scree_status status = SCREE_INVALID_INPUT;
+    bool is_true_sphere = false;
     if (length < sizeof kind)
     {
         memcpy(kind, specification, length);
         kind[length] = '\0';
         const int num = split_numbers(specification + length, values, MAX_VALUES);
         status = call_generator(mesh, kind, values, num);
+        is_true_sphere = strcmp(kind, "sphere") == 0 && (num == 1 || (num == 2 && values[1] == 0));
     }
-    if (status == SCREE_INVALID_INPUT)
+    if (status == SCREE_INVALID_INPUT && is_true_sphere)
+        scree_report_add(report,
+                         "%s: a true sphere has no mesh to look at; give 4 or more triangles, sphere:R:N. In a scene a "
+                         "shape of source sphere without triangles is a true sphere",
+                         specification);
+    else if (status == SCREE_INVALID_INPUT)
         scree_report_add(
             report,
             "%s: not a shape that can be made: box:X:Y:Z, tetrahedron:R, schoenhardt:R, sphere:R:N, "

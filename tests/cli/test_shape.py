@@ -34,6 +34,12 @@ def test_box_in_json():
     assert box["edge_range"] == pytest.approx([1, math.sqrt(13)]) and box["import_rounding"] == 0
 
 
+@pytest.mark.parametrize("specification", ["sphere:1", "sphere:1:0"])
+def test_a_true_sphere_has_no_mesh(specification):
+    done = run("--generate", specification)
+    assert done.returncode == 2 and "a true sphere has no mesh" in done.stderr
+
+
 def test_models_are_valid_with_the_volumes_of_their_plans():
     results = {pathlib.Path(r["name"]).stem: r for r in shapes(*sorted(MODELS.glob("*.obj")))}
     assert set(results) >= {"l_shape", "u_shape", "ring", "rock"}

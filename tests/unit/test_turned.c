@@ -41,11 +41,11 @@ static void check_turned(const scree_profile_point *profile, int num, int segmen
 static void test_drums_silos_and_discs_of_many_sizes(void)
 {
     uint64_t state = 1;
-    for (int n = 0; n < 200; ++n)
+    for (int n = 0; n < 40; ++n)
     {
         const double radius = 0.01 + scree_test_random(&state), half = 0.005 + scree_test_random(&state);
         const double wall = 0.001 + 0.2 * scree_test_random(&state) * radius;
-        const int segments = 3 + (int)(scree_test_random(&state) * 120);
+        const int segments = 3 + (int)(scree_test_random(&state) * 60);
         const double outer = radius + wall, end = half + wall,
                      orifice = radius * (0.05 + 0.9 * scree_test_random(&state));
         const scree_profile_point drum[] = {{0, -end}, {outer, -end},  {outer, end},    {0, end},

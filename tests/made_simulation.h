@@ -166,6 +166,7 @@ static inline void made_simulation_create(made_simulation *made)
 static inline void made_simulation_destroy(made_simulation *made)
 {
     scree_particles_destroy(&made->simulation.particles);
+    scree_wall_loads_destroy(&made->simulation.wall_loads);
     scree_contact_list_destroy(&made->simulation.contacts);
 }
 

@@ -68,6 +68,7 @@ static inline void made_simulation_set_contacts(made_simulation *made, int64_t n
         c->radius[k] = (scree_real)(x * 1e-3);
         c->normal[k] = scree_vec3_make(0, 0, 1);
         c->area_vector[k] = scree_vec3_make(0, 0, (scree_real)-x);
+        c->torque_vector[k] = scree_vec3_make((scree_real)x, 0, 1);
         c->arm[k] = scree_vec3_make((scree_real)x, 0, -1);
         c->normal_force[k] = scree_vec3_make(0, 0, (scree_real)(10 * x));
         c->tangential_force[k] = scree_vec3_make((scree_real)(3 * x), (scree_real)(4 * x), 0);

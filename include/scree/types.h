@@ -43,7 +43,8 @@ extern "C"
         double restitution_coefficient;      ///< [1]; auto if damping_ratio is given; exactly one of the two
         double damping_ratio;                ///< [1] g of 2 g sqrt(m* k) v; auto: from the restitution coefficient
         double tangential_damping_ratio;     ///< [1] auto: damping_ratio
-        double stiffness_factor;             ///< [1] of hertz_mindlin; auto: 4/(3 sqrt(pi))
+        double stiffness_factor;             ///< [1] of E*; auto: what is Hertz's between spheres
+        double energy_exponent;              ///< [1] of energy_conserving; auto: 1.25
         double normal_stiffness;             ///< [N/m] of linear_spring, auto otherwise
         double tangential_stiffness;         ///< [N/m] of linear_spring; auto: normal_stiffness 4 G*/E*
         double tangential_spring;            ///< [1] 1: with tangential history, 0: tangential damping alone

@@ -13,6 +13,7 @@
     X(radius)                   \
     X(normal)                   \
     X(area_vector)              \
+    X(torque_vector)            \
     X(arm)                      \
     X(normal_force)             \
     X(tangential_force)         \
@@ -33,6 +34,7 @@
 #define SCREE_UNTOUCHED_ARRAYS(X) \
     X(radius)                     \
     X(area_vector)                \
+    X(torque_vector)              \
     X(moment)                     \
     X(is_turning)                 \
     X(torsion)                    \

@@ -23,14 +23,15 @@ typedef struct scree_contact_list
     scree_real *radius; ///< * [m] of the contact across the normal, about the contact point; 0 for a sphere's contact,
                         ///< which acts in a point
     scree_vec3 *normal; ///< [1] unit, from j towards i
-    scree_vec3 *area_vector; ///< * [m^2] area of i's surface inside j, outward from i; 0 for a sphere's contact
-    scree_vec3 *arm;         ///< [m] contact point minus position of i
+    scree_vec3 *area_vector;   ///< * [m^2] area of i's surface inside j, outward from i; 0 for a sphere's contact
+    scree_vec3 *torque_vector; ///< * [m^3] sum of x cross area vector over the same part, x from the contact point
+    scree_vec3 *arm;           ///< [m] contact point minus position of i
 
     // forces, from the force law
     scree_vec3 *normal_force;     ///< [N] on i; that on j is the exact opposite
     scree_vec3 *tangential_force; ///< [N] on i, spring and damping, capped
     scree_real *elastic_force;    ///< [N] elastic part of the normal force
-    scree_vec3 *moment;           ///< * [N m] on i, torsion, rocking and rolling resistance
+    scree_vec3 *moment;           ///< * [N m] on i: of the normal force, torsion, rocking, rolling resistance
     scree_real *elastic_work;     ///< [J] change of elastic_energy in this step
     scree_real *spring_work;      ///< [J] change of spring_energy in this step
     uint8_t *is_slipping;         ///< 1 while the tangential force is at the Coulomb limit

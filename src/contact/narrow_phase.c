@@ -354,6 +354,7 @@ static void write_overlaps(const struct scree_narrow_phase_buffers *b, const scr
             list->radius[c] = result->radius;
             list->normal[c] = scree_vec3_negate(result->normal);
             list->area_vector[c] = result->area_vector;
+            list->torque_vector[c] = result->torque_vector;
             list->arm[c] = result->arm;
             ++c;
         }

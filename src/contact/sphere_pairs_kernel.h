@@ -76,6 +76,7 @@ SCREE_FN void scree_write_point(scree_contact_list list, int64_t c)
     if (list.acts_in_points) return;
     list.radius[c] = 0;
     list.area_vector[c] = scree_vec3_zero();
+    list.torque_vector[c] = scree_vec3_zero();
 }
 
 SCREE_FN void scree_sphere_sphere_write_at(scree_sphere_sphere_write_args a, int64_t b)

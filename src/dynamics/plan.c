@@ -11,7 +11,7 @@ static const size_t bytes_constant = 2 * sizeof(scree_real) + sizeof(scree_vec3)
 static const size_t bytes_search =
     2 * sizeof(scree_pose) + sizeof(scree_box) + sizeof(scree_vec3) + sizeof(scree_real) + 2 * sizeof(scree_lbvh_node);
 static const size_t bytes_contact =
-    2 * (sizeof(scree_candidate_pair) + sizeof(int32_t) + 10 * sizeof(scree_real) + 8 * sizeof(scree_vec3) + 2) +
+    2 * (sizeof(scree_candidate_pair) + sizeof(int32_t) + 10 * sizeof(scree_real) + 9 * sizeof(scree_vec3) + 2) +
     sizeof(int64_t) + 1;
 static const size_t bytes_pair = sizeof(scree_candidate_pair) + 4 * sizeof(int32_t) + 2 * sizeof(int64_t);
 static const size_t bytes_mesh_pair =

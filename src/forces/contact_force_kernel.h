@@ -38,7 +38,7 @@ typedef struct scree_contact_force_args
     scree_real time_step; ///< [s]
 } scree_contact_force_args;
 
-/// Radius and inertia of rolling of a contact, those of the spheres of equal volume.
+/// Radius R* and inertia of rolling of a contact, those of the spheres of equal volume.
 SCREE_FN void scree_rolling_pair(const scree_body_motion *bodies, int32_t i, int32_t j, scree_contact_kinematics *k)
 {
     const scree_real i_over_r = bodies->inverse_radius[i], j_over_r = bodies->inverse_radius[j];
@@ -68,7 +68,17 @@ SCREE_FN void scree_contact_force_at(scree_contact_force_args a, int64_t c)
     k.time_step = a.time_step;
     k.effective_radius = 0;
     k.rolling_inertia = 0;
-    if (law->rolling != SCREE_ROLLING_NONE) scree_rolling_pair(&bodies, pair.i, pair.j, &k);
+    k.area = 0;
+    k.lever = scree_vec3_zero();
+    if (law->rolling != SCREE_ROLLING_NONE || law->model == SCREE_MODEL_ENERGY_CONSERVING)
+        scree_rolling_pair(&bodies, pair.i, pair.j, &k);
+    if (law->model == SCREE_MODEL_ENERGY_CONSERVING)
+    {
+        // a sphere's contact, V = pi R* d^2, has |S| = dV/dd and no lever
+        const scree_real area = scree_vec3_length(a.contacts.area_vector[c]);
+        k.area = area > 0 ? area : 2 * k.volume / k.indentation;
+        k.lever = scree_normal_lever(a.contacts.area_vector[c], a.contacts.torque_vector[c]);
+    }
     k.spring_force = scree_vec3_zero();
     k.torsion = 0;
     k.rolling_moment = scree_vec3_zero();

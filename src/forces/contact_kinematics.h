@@ -12,6 +12,8 @@ typedef struct scree_contact_kinematics
     scree_real indentation;          ///< [m] > 0
     scree_real radius;               ///< [m] of the contact across the normal
     scree_vec3 normal;               ///< [1] unit, from j towards i
+    scree_real area;                 ///< [m^2] length of the area vector; set if the law asks for it
+    scree_vec3 lever;                ///< [m] of the normal force; set if the law has one, 0 otherwise
     scree_vec3 relative_velocity;    ///< [m/s] of i against j at the contact point
     scree_vec3 relative_rotation;    ///< [rad/s] angular velocity of i minus that of j
     scree_real effective_mass;       ///< [kg]
@@ -41,6 +43,21 @@ typedef struct scree_contact_force
     bool is_slipping;
     bool is_turning; ///< a moment is at its limit
 } scree_contact_force;
+
+/// The normal part of the wrench on i is F n and -F lever: the gradient of the overlap volume has a moment M/|S| about
+/// the contact point that goes with the normal S/|S|. Only the law that is made from that gradient takes it along.
+SCREE_FN scree_vec3 scree_normal_lever(scree_vec3 area_vector, scree_vec3 torque_vector)
+{
+    const scree_real area = scree_vec3_length(area_vector);
+    return area > 0 ? scree_vec3_scale(torque_vector, 1 / area) : scree_vec3_zero();
+}
+
+/// Speed [m/s] that the normal force works against: of approach, and dV/dt over |S| if it has a lever.
+SCREE_FN scree_real scree_approach_speed(scree_vec3 normal, scree_vec3 lever, scree_vec3 relative_velocity,
+                                         scree_vec3 relative_rotation)
+{
+    return scree_vec3_dot(lever, relative_rotation) - scree_vec3_dot(normal, relative_velocity);
+}
 
 /// By how much a spring shrinks while its contact is unloaded; 1 while it is loaded.
 SCREE_FN scree_real scree_unloading_ratio(const scree_contact_kinematics *k, const scree_contact_force *f)

@@ -9,6 +9,7 @@
 #define SCREE_CONTACT_LAW_KERNEL_H
 
 #include "forces/contact_moment_kernel.h"
+#include "forces/energy_conserving_kernel.h"
 #include "forces/friction_kernel.h"
 #include "forces/hertz_mindlin_kernel.h"
 #include "forces/linear_spring_kernel.h"
@@ -17,10 +18,11 @@
 SCREE_FN void scree_contact_law(const scree_force_law *law, const scree_contact_kinematics *k, scree_contact_force *f)
 {
     if (law->model == SCREE_MODEL_LINEAR_SPRING) scree_linear_spring(law, k, f);
+    else if (law->model == SCREE_MODEL_ENERGY_CONSERVING) scree_energy_conserving(law, k, f);
     else scree_hertz_mindlin(law, k, f);
     f->tangential_stiffness = law->tangential_over_normal * f->normal_stiffness;
 
-    const scree_real approach = -scree_vec3_dot(k->relative_velocity, k->normal);
+    const scree_real approach = scree_approach_speed(k->normal, k->lever, k->relative_velocity, k->relative_rotation);
     const scree_real damping = 2 * law->damping_ratio * scree_sqrt(k->effective_mass * f->normal_stiffness);
     scree_real normal_force = f->elastic_force + damping * approach;
     if (normal_force < 0 && !law->has_attraction) normal_force = 0;
@@ -28,7 +30,7 @@ SCREE_FN void scree_contact_law(const scree_force_law *law, const scree_contact_
 
     const scree_real pressing = scree_max(normal_force, 0);
     scree_friction(law, k, pressing, f);
-    f->moment = scree_vec3_zero();
+    f->moment = scree_vec3_scale(k->lever, -normal_force);
     f->torsion = 0;
     f->rolling_moment = scree_vec3_zero();
     f->is_turning = false;

@@ -87,16 +87,21 @@ scree_status scree_force_law_make(const scree_contact_law_def *def, const scree_
 
     const double modulus = 1 / (normal_compliance(a) + normal_compliance(b));
     const double shear_modulus = 1 / (shear_compliance(a, def->shear_mixing) + shear_compliance(b, def->shear_mixing));
-    const double damping_ratio = isnan(def->damping_ratio)
-                                     ? scree_damping_ratio_from_restitution(def->restitution_coefficient,
-                                                                            models[model].exponent, def->attraction)
-                                     : def->damping_ratio;
+    // F ~ d^(2p - 1) between spheres
+    const bool is_conserving = model == SCREE_MODEL_ENERGY_CONSERVING && !isnan(def->energy_exponent);
+    const double exponent = is_conserving ? 2 * def->energy_exponent - 1 : models[model].exponent;
+    const double damping_ratio =
+        isnan(def->damping_ratio)
+            ? scree_damping_ratio_from_restitution(def->restitution_coefficient, exponent, def->attraction)
+            : def->damping_ratio;
     const bool has_tangential_stiffness = model == SCREE_MODEL_LINEAR_SPRING && !isnan(def->tangential_stiffness);
     *law = (scree_force_law){0};
     law->model = model;
     law->effective_modulus = (scree_real)modulus;
-    // 4/(3 sqrt(pi)), Hertz's between spheres
-    law->stiffness_factor = (scree_real)(isnan(def->stiffness_factor) ? 0.7522527780636751 : def->stiffness_factor);
+    // Hertz's between spheres: 8/15 pi^(-5/4) and 4/(3 sqrt(pi))
+    const double hertz = model == SCREE_MODEL_ENERGY_CONSERVING ? 0.12751503283646595 : 0.7522527780636751;
+    law->stiffness_factor = (scree_real)(isnan(def->stiffness_factor) ? hertz : def->stiffness_factor);
+    if (model == SCREE_MODEL_ENERGY_CONSERVING) law->exponent_quarters = (int32_t)lround(2 * (exponent - 1));
     if (model == SCREE_MODEL_LINEAR_SPRING) law->normal_stiffness = (scree_real)def->normal_stiffness;
     law->tangential_over_normal =
         (scree_real)(has_tangential_stiffness ? def->tangential_stiffness / def->normal_stiffness
@@ -117,9 +122,14 @@ scree_status scree_force_law_make(const scree_contact_law_def *def, const scree_
     return SCREE_OK;
 }
 
-double scree_force_law_largest_stiffness(const scree_force_law *law, double contact_radius)
+double scree_force_law_largest_stiffness(const scree_force_law *law, double contact_radius, double radius)
 {
-    const double normal = law->model == SCREE_MODEL_LINEAR_SPRING ? 2 * (double)law->normal_stiffness
-                                                                  : 2 * (double)law->effective_modulus * contact_radius;
+    const double modulus = (double)law->effective_modulus, p = 1 + 0.25 * law->exponent_quarters;
+    double normal = 2 * modulus * contact_radius;
+    if (law->model == SCREE_MODEL_LINEAR_SPRING) normal = 2 * (double)law->normal_stiffness;
+    // as in energy_conserving_kernel.h with V = pi R d^2, d = a^2/R
+    if (law->model == SCREE_MODEL_ENERGY_CONSERVING)
+        normal = 2 * M_PI * radius * (2 * p - 1) * p * (double)law->stiffness_factor * modulus *
+                 pow(M_PI * pow(contact_radius / radius, 4), p - 1);
     return normal * fmax(1, (double)law->tangential_over_normal);
 }

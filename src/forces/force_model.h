@@ -20,6 +20,7 @@ typedef struct scree_force_law
     scree_real rolling_friction_coefficient; ///< [1]
     scree_real rolling_damping_ratio;        ///< [1]
     int32_t model;                           ///< SCREE_MODEL_*
+    int32_t exponent_quarters;               ///< 4 (p - 1) of energy_conserving
     int32_t rolling;                         ///< scree_rolling_resistance_kind
     bool has_tangential_spring;
     bool has_moments;    ///< springs and dashpots are spread over the contact area
@@ -29,7 +30,7 @@ typedef struct scree_force_law
 typedef struct scree_force_model
 {
     const char *name;
-    double exponent;    ///< n of F ~ d^n between spheres
+    double exponent;    ///< n of F ~ d^n between spheres, of energy_conserving with its default p
     const char *text;   ///< one line
     const char *source; ///< paper
 } scree_force_model;
@@ -62,8 +63,9 @@ scree_status scree_force_law_make(const scree_contact_law_def *def, const scree_
 double scree_damping_ratio_from_restitution(double restitution_coefficient, double exponent, bool has_attraction);
 
 /// Stiffness [N/m] that the contacts of a body against a fixed one are not expected to exceed: the larger of k_n and
-/// k_t. Of hertz_mindlin on a flat contact of radius a, 2 E* a; of linear_spring twice the spring, as a partner of the
-/// same mass makes it. 0 for a pair of materials without a law.
-double scree_force_law_largest_stiffness(const scree_force_law *law, double contact_radius);
+/// k_t. On a contact of radius a of a body of radius R: of hertz_mindlin 2 E* a, of energy_conserving the same for p =
+/// 5/4; of linear_spring twice the spring, as a partner of the same mass makes it. 0 for a pair of materials without a
+/// law.
+double scree_force_law_largest_stiffness(const scree_force_law *law, double contact_radius, double radius);
 
 #endif

@@ -52,19 +52,25 @@ SCREE_FN void scree_work_of_contact(const scree_work_args *a, int64_t c, scree_w
     const scree_candidate_pair pair = a->contacts.bodies[c];
     const scree_vec3 arm = a->contacts.arm[c], n = a->contacts.normal[c];
     const scree_vec3 v = scree_relative_velocity(&a->bodies, pair.i, pair.j, arm);
-    const scree_real v_n = scree_vec3_dot(v, n);
+    const scree_vec3 rotation = scree_vec3_sub(a->bodies.angular_velocity[pair.i], a->bodies.angular_velocity[pair.j]);
+    const scree_force_law *law =
+        a->laws + (int64_t)a->bodies.material[pair.i] * a->num_materials + a->bodies.material[pair.j];
+    scree_vec3 lever = scree_vec3_zero();
+    if (law->model == SCREE_MODEL_ENERGY_CONSERVING)
+        lever = scree_normal_lever(a->contacts.area_vector[c], a->contacts.torque_vector[c]);
+    const scree_real approach = scree_approach_speed(n, lever, v, rotation);
 
     // normal: what the spring takes up and what is damped
     const scree_real elastic = a->contacts.elastic_force[c];
     const scree_real normal = scree_vec3_dot(a->contacts.normal_force[c], n);
-    sums->hysteresis -= elastic * v_n * a->time_step + a->contacts.elastic_work[c];
-    sums->damping -= (normal - elastic) * v_n * a->time_step;
+    sums->hysteresis += elastic * approach * a->time_step - a->contacts.elastic_work[c];
+    sums->damping += (normal - elastic) * approach * a->time_step;
 
     // tangential and moments: what the springs do not take up is lost
-    const scree_vec3 rotation = scree_vec3_sub(a->bodies.angular_velocity[pair.i], a->bodies.angular_velocity[pair.j]);
     const bool has_extent = !a->contacts.acts_in_points;
     const scree_vec3 moment = has_extent ? a->contacts.moment[c] : scree_vec3_zero();
-    const scree_real power = scree_vec3_dot(a->contacts.tangential_force[c], v) + scree_vec3_dot(moment, rotation);
+    const scree_vec3 shared = scree_vec3_add_scaled(moment, lever, normal); // without that of the normal force
+    const scree_real power = scree_vec3_dot(a->contacts.tangential_force[c], v) + scree_vec3_dot(shared, rotation);
     const scree_real lost = -power * a->time_step - a->contacts.spring_work[c];
     if (a->contacts.is_slipping[c] || (has_extent && a->contacts.is_turning[c])) sums->friction += lost;
     else sums->damping += lost;
@@ -82,8 +88,6 @@ SCREE_FN void scree_work_of_contact(const scree_work_args *a, int64_t c, scree_w
     }
 
     // the stiffer of the two counts
-    const scree_force_law *law =
-        a->laws + (int64_t)a->bodies.material[pair.i] * a->num_materials + a->bodies.material[pair.j];
     const scree_real k_t = a->contacts.tangential_stiffness[c];
     const scree_real k_n = k_t / law->tangential_over_normal;
     const scree_real inverse_mass =

@@ -64,6 +64,7 @@ static uint64_t hash_law(uint64_t hash, const scree_force_law *law)
                               law->rolling_friction_coefficient,
                               law->rolling_damping_ratio,
                               law->model,
+                              law->exponent_quarters,
                               law->rolling,
                               law->has_tangential_spring,
                               law->has_attraction,

@@ -151,6 +151,7 @@ static scree_contact_list contacts_on(side &where, const scree_contact_list &lis
     c.radius = where.copy(list.radius, n);
     c.normal = where.copy(list.normal, n);
     c.area_vector = where.copy(list.area_vector, n);
+    c.torque_vector = where.copy(list.torque_vector, n);
     c.arm = where.copy(list.arm, n);
     c.normal_force = where.copy(list.normal_force, n);
     c.tangential_force = where.copy(list.tangential_force, n);
@@ -492,6 +493,7 @@ static void find_spheres_on(side &where, int kind)
     args.list.radius = where.make<scree_real>(n);
     args.list.normal = where.make<scree_vec3>(n);
     args.list.area_vector = where.make<scree_vec3>(n);
+    args.list.torque_vector = where.make<scree_vec3>(n);
     args.list.arm = where.make<scree_vec3>(n);
     if (kind == 2) LAUNCH_ON(where, scree_sphere_sphere_write, args, num);
     else LAUNCH_ON(where, scree_sphere_mesh_write, args, num);
@@ -502,6 +504,7 @@ static void find_spheres_on(side &where, int kind)
     where.keep(args.list.radius, n);
     where.keep(args.list.normal, n);
     where.keep(args.list.area_vector, n);
+    where.keep(args.list.torque_vector, n);
     where.keep(args.list.arm, n);
 }
 

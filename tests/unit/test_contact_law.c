@@ -124,6 +124,8 @@ static double measured_restitution(const scree_force_law *law, double mass, doub
         d += dt * v;
         if (d <= 0) break;
         scree_contact_kinematics k = make_sphere_contact(0.01, d);
+        k.area = 2 * M_PI * 0.01 * d;
+        k.effective_radius = 0.01;
         k.effective_mass = mass;
         k.relative_velocity.z = -v;
         scree_contact_force f;
@@ -149,6 +151,8 @@ static void check_restitution(int32_t model, bool has_attraction)
         scree_force_law law = make_law(0, scree_damping_ratio_from_restitution(values[k], exponent, has_attraction));
         law.model = model;
         law.normal_stiffness = 1e4;
+        if (model == SCREE_MODEL_ENERGY_CONSERVING) law.stiffness_factor = (scree_real)(8.0 / 15.0 * pow(M_PI, -1.25));
+        law.exponent_quarters = 1;
         law.has_attraction = has_attraction;
         for (double dt = 4e-7; dt > 0.5e-7; dt /= 4)
             SCREE_CHECK_CLOSE(measured_restitution(&law, mass, dt), values[k], frequency * dt);
@@ -170,7 +174,7 @@ static scree_contact_law_def make_definition(char *model)
     scree_contact_law_def def = {0};
     def.model = model;
     def.damping_ratio = 0.1;
-    def.tangential_damping_ratio = def.normal_stiffness = def.tangential_stiffness = NAN;
+    def.tangential_damping_ratio = def.normal_stiffness = def.tangential_stiffness = def.energy_exponent = NAN;
     def.tangential_spring = 1;
     def.stiffness_factor = 0.75;
     return def;
@@ -204,6 +208,15 @@ static void test_mixing_rules(void)
     def.tangential_stiffness = 5e4;
     SCREE_CHECK_INT(scree_force_law_make(&def, &a, &b, &law), SCREE_OK);
     SCREE_CHECK(law.normal_stiffness == 2e5 && law.tangential_over_normal == 0.25);
+    char conserving[] = "energy_conserving";
+    def = make_definition(conserving);
+    def.stiffness_factor = NAN;
+    SCREE_CHECK_INT(scree_force_law_make(&def, &a, &b, &law), SCREE_OK);
+    SCREE_CHECK(law.exponent_quarters == 1);
+    SCREE_CHECK_CLOSE(law.stiffness_factor, 8.0 / 15.0 * pow(M_PI, -1.25), 1e-16);
+    def.energy_exponent = 1.75;
+    SCREE_CHECK_INT(scree_force_law_make(&def, &a, &b, &law), SCREE_OK);
+    SCREE_CHECK(law.exponent_quarters == 3);
     def = make_definition(unknown);
     SCREE_CHECK_INT(scree_force_law_make(&def, &a, &b, &law), SCREE_NOT_FOUND);
 }
@@ -225,6 +238,65 @@ static void test_linear_spring(void)
         SCREE_CHECK(f.normal_stiffness == 3e4 && f.tangential_stiffness == 1.5e4);
         k.volume *= 7;
     }
+}
+
+/// Between spheres, |S| = 2 pi R d: with p = 5/4 Hertz to rounding, with p = 1 a spring of 2 pi R c E*; the force is
+/// dw/dd.
+static void test_energy_conserving_between_spheres(void)
+{
+    scree_force_law law = make_law(0.5, 0);
+    law.model = SCREE_MODEL_ENERGY_CONSERVING;
+    law.stiffness_factor = (scree_real)(8.0 / 15.0 * pow(M_PI, -1.25));
+    for (law.exponent_quarters = 0; law.exponent_quarters <= 4; ++law.exponent_quarters)
+    {
+        const double d = 1e-5, h = 1e-8;
+        double energy[3];
+        scree_contact_force f = {0};
+        for (int step = -1; step <= 1; ++step)
+        {
+            scree_contact_kinematics k = make_sphere_contact(0.01, d + step * h);
+            k.area = 2 * M_PI * 0.01 * k.indentation;
+            k.effective_radius = 0.01;
+            if (step == 0) scree_contact_law(&law, &k, &f);
+            scree_contact_force moved;
+            scree_contact_law(&law, &k, &moved);
+            energy[step + 1] = moved.elastic_energy;
+        }
+        // central difference of w ~ d^(2p): off by (h/d)^2 at most, and by the rounding of w over h/d
+        SCREE_CHECK_CLOSE(f.elastic_force, (energy[2] - energy[0]) / (2 * h), 2e-6 * f.elastic_force);
+        SCREE_CHECK_CLOSE(f.normal_stiffness, (1 + 0.5 * law.exponent_quarters) * f.elastic_force / d,
+                          1e-14 * f.normal_stiffness);
+        if (law.exponent_quarters == 0)
+            SCREE_CHECK_CLOSE(f.elastic_force, 2 * M_PI * 0.01 * law.stiffness_factor * 1e7 * d,
+                              1e-14 * f.elastic_force);
+        if (law.exponent_quarters == 1)
+            SCREE_CHECK_CLOSE(f.elastic_force, 4.0 / 3.0 * 1e7 * 0.1 * pow(d, 1.5), 1e-14 * f.elastic_force);
+    }
+}
+
+/// The damping acts along the gradient of the volume: turning that leaves V alone is not damped, turning that closes
+/// is.
+static void test_lever_of_the_normal_force(void)
+{
+    scree_force_law law = make_law(0, 0.3);
+    law.model = SCREE_MODEL_ENERGY_CONSERVING;
+    law.stiffness_factor = (scree_real)0.1275;
+    law.exponent_quarters = 1;
+    scree_contact_kinematics k = make_sphere_contact(0.01, 1e-5);
+    k.area = 2 * M_PI * 0.01 * 1e-5;
+    k.effective_radius = 0.01;
+    k.lever = scree_vec3_make((scree_real)1e-3, (scree_real)-2e-3, (scree_real)5e-4);
+    scree_contact_force still, closing;
+    scree_contact_law(&law, &k, &still);
+    SCREE_CHECK_CLOSE(still.moment.x, -1e-3 * still.normal_force.z, 1e-16 * still.normal_force.z);
+    k.relative_rotation = scree_vec3_make(2, 1, 0); // across the lever
+    scree_contact_law(&law, &k, &closing);
+    SCREE_CHECK(closing.normal_force.z == still.normal_force.z);
+    k.relative_rotation = scree_vec3_make(0, 0, 100); // dV/dt/|S| = 0.05 m/s
+    scree_contact_law(&law, &k, &closing);
+    const double damping = 2 * 0.3 * sqrt(0.01 * (double)still.normal_stiffness) * 0.05;
+    SCREE_CHECK_CLOSE(closing.normal_force.z - still.normal_force.z, damping, 1e-13 * damping);
+    SCREE_CHECK_CLOSE(closing.moment.z, -5e-4 * closing.normal_force.z, 1e-16 * closing.normal_force.z);
 }
 
 /// A contact of spheres that roll over each other about y.
@@ -306,6 +378,8 @@ int main(void)
     SCREE_RUN(test_restitution_of_both_conventions);
     SCREE_RUN(test_mixing_rules);
     SCREE_RUN(test_linear_spring);
+    SCREE_RUN(test_energy_conserving_between_spheres);
+    SCREE_RUN(test_lever_of_the_normal_force);
     SCREE_RUN(test_constant_rolling_resistance);
     SCREE_RUN(test_rolling_spring);
     return SCREE_TEST_END();

@@ -353,6 +353,10 @@ static void test_faults_of_contact_laws(void)
          "test.yaml:8: stiffness_factor of contact_laws.0 has no effect with model linear_spring; remove it"},
         {8, "  - {materials: [rock, rock], model: linear_spring, friction_coefficient: 0, damping_ratio: 0}",
          "test.yaml:8: contact_laws.0 has no normal_stiffness, which model linear_spring needs; add it"},
+        {8,
+         "  - {materials: [rock, rock], model: energy_conserving, friction_coefficient: 0, damping_ratio: 0, "
+         "energy_exponent: 1.3}",
+         "test.yaml:8: energy_exponent of contact_laws.0 is 1.3; it must be 1, 1.25, 1.5, 1.75 or 2"},
         {8, "  - {materials: [rock, rock], friction_coefficient: 0, damping_ratio: 0, normal_stiffness: 1e5}",
          "normal_stiffness of contact_laws.0 has no effect with model hertz_mindlin"},
         {8, "  - {materials: [rock, rock], friction_coefficient: 0, damping_ratio: 0, rolling_resistance: constant}",
@@ -364,7 +368,8 @@ static void test_faults_of_contact_laws(void)
          "rolling_friction_coefficient: 1, rolling_damping_ratio: 1}",
          "rolling_damping_ratio of contact_laws.0 has no effect with rolling_resistance constant"},
         {10, "    model: hook",
-         "test.yaml:10: model of contact_laws.1 is \"hook\"; it must be hertz_mindlin or linear_spring"},
+         "test.yaml:10: model of contact_laws.1 is \"hook\"; it must be hertz_mindlin, linear_spring or "
+         "energy_conserving"},
         {12, "    restitution_coefficient: 1.3",
          "test.yaml:12: restitution_coefficient of contact_laws.1 is 1.3; it must be a number in [0.01, 1] or auto"},
         {14, "    tangential_spring: 0.5", "tangential_spring of contact_laws.1 is 0.5; it must be 0 or 1"},

@@ -65,6 +65,17 @@ function(scree_add_test_programs kind library)
     endforeach()
 endfunction()
 
+# Programs behind the pages in validation/, built by their run.py.
+file(GLOB study_sources CONFIGURE_DEPENDS validation/*/*.c)
+foreach(source ${study_sources})
+    get_filename_component(name ${source} NAME_WE)
+    add_executable(${name} EXCLUDE_FROM_ALL ${source})
+    target_include_directories(${name} PRIVATE src tests)
+    target_compile_definitions(${name} PRIVATE _XOPEN_SOURCE=700) # M_PI
+    target_link_libraries(${name} PRIVATE scree scree_dependencies)
+    set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/studies)
+endforeach()
+
 foreach(kind unit property physics regression)
     scree_add_test_programs(${kind} scree)
 endforeach()

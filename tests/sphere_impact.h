@@ -20,6 +20,9 @@ typedef struct impact_def
     double friction, restitution;
     const char *law; ///< more of the contact law: ", model: linear_spring, ..."
     double time_step;
+    double (
+        *history)[2]; ///< (max_history) indentation [m] and normal force [N] of each step are put there; may be NULL
+    int max_history;
 } impact_def;
 
 typedef struct impact_result
@@ -28,6 +31,7 @@ typedef struct impact_result
     double velocity[2][3], spin[2][3];           ///< after
     double kinetic_before, kinetic_after;        ///< [J] of translation and rotation
     double balance_before, balance_after;        ///< [J] see simulation.h
+    int num_history;
 } impact_result;
 
 /// E* of the pair [Pa].
@@ -140,6 +144,12 @@ static inline impact_result impact_run(const impact_def *def)
         }
         depth[2] = -gap;
         force[2] = contacts->num_contacts > 0 ? (double)contacts->elastic_force[0] : 0;
+        if (step < def->max_history && contacts->num_contacts > 0)
+        {
+            def->history[step][0] = -gap;
+            def->history[step][1] = (double)scree_vec3_dot(contacts->normal_force[0], contacts->normal[0]);
+            result.num_history = step + 1;
+        }
         if (depth[1] > depth[0] && depth[1] >= depth[2]) result.deepest = impact_top(depth);
         if (force[1] > force[0] && force[1] >= force[2]) result.largest_force = impact_top(force);
         if (gap >= 0)

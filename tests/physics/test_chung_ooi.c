@@ -122,7 +122,7 @@ static void check_sliding(const char *name, const impact_def *def, double *resti
     *restitution = after / before;
 }
 
-/// The speed and spin after test 4 and others follow from e; with e in the numbers to 1e-3 they are what was published.
+/// Speed and spin after sliding throughout: e_t = 1 - mu (1 + e)/tan, spin = 2.5 mu (1 + e) v_n/R.
 static void test_4_oblique_impact(void)
 {
     const double degrees[] = {40, 60, 80}, e_t[] = {0.7829, 0.8948, 0.9679}, spin[] = {544.2, 355.2, 123.4};

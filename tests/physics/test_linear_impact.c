@@ -114,10 +114,40 @@ static void test_momentum_and_energy(void)
     }
 }
 
+/// The automatic step knows the spring: half of sqrt(m/7/k), a partner of equal mass hit along the tangent, k the
+/// stiffer of the two springs. A run counts sqrt(m/k) for a ball on a plane.
+static void test_automatic_time_step(void)
+{
+    const double tangential[] = {5e5, 4e6};
+    for (int k = 0; k < 2; ++k)
+    {
+        char text[1000];
+        snprintf(text, sizeof text,
+                 "time: {end: 1}\nmaterials: [{name: glass, density: 2500, youngs_modulus: 1e9, poisson_ratio: 0.25}]\n"
+                 "contact_laws: [{materials: [glass, glass], model: linear_spring, normal_stiffness: 1e6, "
+                 "tangential_stiffness: %g, friction_coefficient: 0.3, damping_ratio: 0.1}]\n"
+                 "shapes: [{name: ball, source: sphere, size: 0.02}, {name: plate, source: box, size: [1, 1, 0.1]}]\n"
+                 "particles: [{name: one, shape: ball, material: glass, bodies: [{position: [0, 0, 0.00999]}]}]\n"
+                 "walls: [{name: floor, shape: plate, material: glass, position: [0, 0, -0.05]}]\n",
+                 tangential[k]);
+        scene_run run;
+        scene_run_start(&run, text);
+        if (run.simulation == NULL) return;
+        const double mass = (double)run.simulation->particles.mass[0], largest = fmax(stiffness, tangential[k]);
+        SCREE_CHECK_CLOSE(scree_simulation_time_step(run.simulation), 0.5 * sqrt(mass / 7 / largest),
+                          1e-15 * sqrt(mass / largest));
+        SCREE_CHECK_INT(scree_simulation_step(run.simulation, &run.report), SCREE_OK);
+        SCREE_CHECK_CLOSE(scree_simulation_counters(run.simulation).smallest_critical_step, sqrt(mass / largest),
+                          1e-14 * sqrt(mass / largest));
+        scene_run_end(&run);
+    }
+}
+
 int main(void)
 {
     SCREE_RUN(test_contact_time_and_restitution);
     SCREE_RUN(test_sticking_friction);
     SCREE_RUN(test_momentum_and_energy);
+    SCREE_RUN(test_automatic_time_step);
     return SCREE_TEST_END();
 }

@@ -198,7 +198,8 @@ static void check_law(scree_scene_reader *reader, const scree_yaml_node *law, in
         scree_scene_fault(reader, scree_rules_place(law, "tangential_spring"),
                           "tangential_spring of contact_laws.%lld is %g; it must be 0 or 1", (long long)index, spring);
 
-    if (scree_rules_number(law, "energy_exponent", &exponent) && !isnan(exponent) && 4 * exponent != floor(4 * exponent))
+    if (scree_rules_number(law, "energy_exponent", &exponent) && !isnan(exponent) &&
+        4 * exponent != floor(4 * exponent))
         scree_scene_fault(reader, scree_rules_place(law, "energy_exponent"),
                           "energy_exponent of contact_laws.%lld is %g; it must be 1, 1.25, 1.5, 1.75 or 2",
                           (long long)index, exponent);

@@ -20,7 +20,6 @@ SCREE_FN void scree_contact_law(const scree_force_law *law, const scree_contact_
     if (law->model == SCREE_MODEL_LINEAR_SPRING) scree_linear_spring(law, k, f);
     else if (law->model == SCREE_MODEL_ENERGY_CONSERVING) scree_energy_conserving(law, k, f);
     else scree_hertz_mindlin(law, k, f);
-    f->tangential_stiffness = law->tangential_over_normal * f->normal_stiffness;
 
     const scree_real approach = scree_approach_speed(k->normal, k->lever, k->relative_velocity, k->relative_rotation);
     const scree_real damping = 2 * law->damping_ratio * scree_sqrt(k->effective_mass * f->normal_stiffness);

@@ -9,8 +9,10 @@
 /// -S/|S| with F = w'|S|, and -F M/|S| about the contact point. The part of M across S says where the line of action
 /// lies, x_c = (S x M)/|S|^2; the part along S is a moment that no shift of the line can replace.
 ///
-/// k_n = 2 pi R* (2p - 1) w'(V), the slope of F between spheres; of a flat contact F goes as d^(p-1), whose slope has
-/// no bound at d = 0 for p < 2.
+/// k_n = w'' |S|^2 + w' |S|/d, the slope of F where |S| grows with d: between spheres exactly, on flat contacts |S|
+/// does not grow and F goes as d^(p-1). There the slope has no bound at d = 0 for p < 2; what a step cannot resolve is
+/// left out, k_n <= m*/dt^2. k_t = r 2 pi R* (2p - 1) w', with k_n as between spheres: it grows with the contact
+/// whatever its shape.
 #ifndef SCREE_ENERGY_CONSERVING_KERNEL_H
 #define SCREE_ENERGY_CONSERVING_KERNEL_H
 
@@ -30,7 +32,9 @@ SCREE_FN void scree_energy_conserving(const scree_force_law *law, const scree_co
     const scree_real two_pi = (scree_real)6.2831853071795864769;
     f->elastic_energy = pressure * k->volume;
     f->elastic_force = slope * k->area;
-    f->normal_stiffness = two_pi * radius * (2 * exponent - 1) * slope;
+    const scree_real normal_stiffness = slope * k->area * ((exponent - 1) * k->area / k->volume + 1 / k->indentation);
+    f->normal_stiffness = scree_min(normal_stiffness, k->effective_mass / (k->time_step * k->time_step));
+    f->tangential_stiffness = law->tangential_over_normal * (two_pi * radius * (2 * exponent - 1) * slope);
 }
 
 #endif

@@ -45,7 +45,9 @@ enum
       "factor c of E* in hertz_mindlin and energy_conserving; auto: Hertz's between spheres, 4/(3 sqrt(pi)) = 0.7523 " \
       "and 8/15 pi^(-5/4) = 0.1275. Nassauer & Kuna (2013) report 0.62 for polyhedra in hertz_mindlin")                \
     X(energy_exponent, "1", "auto", "auto", 1, 2, SCREE_BY_ENERGY_CONSERVING, 0,                                       \
-      "p of energy_conserving: 1, 1.25, 1.5, 1.75 or 2; between spheres F goes as d^(2p-1); auto: 1.25, as Hertz")     \
+      "p of energy_conserving: 1, 1.25, 1.5, 1.75 or 2; between spheres F goes as d^(2p-1); auto: 1.25, as Hertz; "    \
+      "bodies "                                                                                                        \
+      "that rest on flat faces want 2, where F goes as d")                                                             \
     X(normal_stiffness, "N/m", "auto", "auto", 1e-9, 1e15, SCREE_BY_LINEAR_SPRING, SCREE_BY_LINEAR_SPRING,             \
       "k_n of linear_spring, which must have one")                                                                     \
     X(tangential_stiffness, "N/m", "auto", "auto", 1e-9, 1e15, SCREE_BY_LINEAR_SPRING, 0,                              \

@@ -17,6 +17,7 @@ SCREE_FN void scree_hertz_mindlin(const scree_force_law *law, const scree_contac
     const scree_real inverse_pi = (scree_real)0.31830988618379067154;
     const scree_real contact_radius = scree_sqrt(inverse_pi * (k->volume / k->indentation));
     f->normal_stiffness = 2 * law->effective_modulus * contact_radius;
+    f->tangential_stiffness = law->tangential_over_normal * f->normal_stiffness;
     f->elastic_force = law->stiffness_factor * law->effective_modulus * scree_sqrt(k->volume * k->indentation);
     // the integral of F over d between spheres
     f->elastic_energy = (scree_real)0.4 * f->elastic_force * k->indentation;

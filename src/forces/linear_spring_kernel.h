@@ -9,6 +9,7 @@
 SCREE_FN void scree_linear_spring(const scree_force_law *law, const scree_contact_kinematics *k, scree_contact_force *f)
 {
     f->normal_stiffness = law->normal_stiffness;
+    f->tangential_stiffness = law->tangential_over_normal * f->normal_stiffness;
     f->elastic_force = law->normal_stiffness * k->indentation;
     f->elastic_energy = (scree_real)0.5 * f->elastic_force * k->indentation;
 }

@@ -86,9 +86,38 @@ static void check_conserving(const char *name, const char *shape)
 static void test_cubes(void) { check_conserving("cubes", "source: box, size: 0.1"); }
 static void test_rocks(void) { check_conserving("rocks", "source: rock, size: 0.1, triangles: 40, seed: 3"); }
 
+/// With p = 2 a cube on its face stands on a spring: w = c E* V^2/R^3, V = a^2 d, R that of the sphere of its volume.
+/// Dropped flat, damped, it comes to rest at the depth that carries it, and what the spring took it gave back.
+static void test_cube_rests_on_its_face(void)
+{
+    scene_run run;
+    scene_run_start(&run,
+                    "time: {end: 1, step: 1e-4}\n"
+                    "materials: [{name: stone, density: 2500, youngs_modulus: 1e7, poisson_ratio: 0.25}]\n"
+                    "contact_laws: [{materials: [stone, stone], model: energy_conserving, energy_exponent: 2, "
+                    "friction_coefficient: 0.5, restitution_coefficient: 0.3}]\n"
+                    "shapes: [{name: cube, source: box, size: 0.1}, {name: plate, source: box, size: [1, 1, 0.2]}]\n"
+                    "particles: [{name: one, shape: cube, material: stone, bodies: [{position: [0, 0, 0.051]}]}]\n"
+                    "walls: [{name: floor, shape: plate, material: stone, position: [0, 0, -0.1]}]\n");
+    if (run.simulation == NULL) return;
+    scene_run_until(&run, 1);
+    const scree_energies e = scree_simulation_energies(run.simulation);
+    const double modulus = 1e7 / (2 * 0.9375), cube_of_radius = 3 * 1e-3 / (4 * M_PI), weight = 2.5 * 9.81;
+    const double stiffness = 2 * 8.0 / 15.0 * pow(M_PI, -1.25) * modulus * 1e-4 / cube_of_radius;
+    const double depth = weight / stiffness, found = 0.05 - (double)run.simulation->particles.position[0].z;
+    printf("cube on its face: depth %.9g m, expected %.9g; hysteresis %.2g J of %.2g J\n", found, depth, e.hysteresis,
+           weight * 1e-3);
+    SCREE_CHECK_CLOSE(found, depth, 1e-9 * depth);
+    SCREE_CHECK(e.kinetic + e.rotational < 1e-20);
+    // what is left over is of second order in w dt = sqrt(k/m) dt
+    SCREE_CHECK_CLOSE(e.hysteresis, 0, stiffness / 2.5 * 1e-8 * weight * 1e-3);
+    scene_run_end(&run);
+}
+
 int main(void)
 {
     SCREE_RUN(test_cubes);
     SCREE_RUN(test_rocks);
+    SCREE_RUN(test_cube_rests_on_its_face);
     return SCREE_TEST_END();
 }

@@ -52,13 +52,6 @@ SCREE_FN scree_vec3 scree_normal_lever(scree_vec3 area_vector, scree_vec3 torque
     return area > 0 ? scree_vec3_scale(torque_vector, 1 / area) : scree_vec3_zero();
 }
 
-/// Speed [m/s] that the normal force works against: of approach, and dV/dt over |S| if it has a lever.
-SCREE_FN scree_real scree_approach_speed(scree_vec3 normal, scree_vec3 lever, scree_vec3 relative_velocity,
-                                         scree_vec3 relative_rotation)
-{
-    return scree_vec3_dot(lever, relative_rotation) - scree_vec3_dot(normal, relative_velocity);
-}
-
 /// By how much a spring shrinks while its contact is unloaded; 1 while it is loaded.
 SCREE_FN scree_real scree_unloading_ratio(const scree_contact_kinematics *k, const scree_contact_force *f)
 {

@@ -21,7 +21,9 @@ SCREE_FN void scree_contact_law(const scree_force_law *law, const scree_contact_
     else if (law->model == SCREE_MODEL_ENERGY_CONSERVING) scree_energy_conserving(law, k, f);
     else scree_hertz_mindlin(law, k, f);
 
-    const scree_real approach = scree_approach_speed(k->normal, k->lever, k->relative_velocity, k->relative_rotation);
+    // of approach, and dV/dt over |S| where the normal force has a lever
+    const scree_real approach =
+        scree_vec3_dot(k->lever, k->relative_rotation) - scree_vec3_dot(k->normal, k->relative_velocity);
     const scree_real damping = 2 * law->damping_ratio * scree_sqrt(k->effective_mass * f->normal_stiffness);
     scree_real normal_force = f->elastic_force + damping * approach;
     if (normal_force < 0 && !law->has_attraction) normal_force = 0;

@@ -55,10 +55,12 @@ SCREE_FN void scree_work_of_contact(const scree_work_args *a, int64_t c, scree_w
     const scree_vec3 rotation = scree_vec3_sub(a->bodies.angular_velocity[pair.i], a->bodies.angular_velocity[pair.j]);
     const scree_force_law *law =
         a->laws + (int64_t)a->bodies.material[pair.i] * a->num_materials + a->bodies.material[pair.j];
-    scree_vec3 lever = scree_vec3_zero();
+    // speed of approach, with what turning adds where the normal force has a lever
+    scree_real turning = 0;
     if (law->model == SCREE_MODEL_ENERGY_CONSERVING)
-        lever = scree_normal_lever(a->contacts.area_vector[c], a->contacts.torque_vector[c]);
-    const scree_real approach = scree_approach_speed(n, lever, v, rotation);
+        turning =
+            scree_vec3_dot(scree_normal_lever(a->contacts.area_vector[c], a->contacts.torque_vector[c]), rotation);
+    const scree_real approach = turning - scree_vec3_dot(n, v);
 
     // normal: what the spring takes up and what is damped
     const scree_real elastic = a->contacts.elastic_force[c];
@@ -69,8 +71,8 @@ SCREE_FN void scree_work_of_contact(const scree_work_args *a, int64_t c, scree_w
     // tangential and moments: what the springs do not take up is lost
     const bool has_extent = !a->contacts.acts_in_points;
     const scree_vec3 moment = has_extent ? a->contacts.moment[c] : scree_vec3_zero();
-    const scree_vec3 shared = scree_vec3_add_scaled(moment, lever, normal); // without that of the normal force
-    const scree_real power = scree_vec3_dot(a->contacts.tangential_force[c], v) + scree_vec3_dot(shared, rotation);
+    const scree_real power =
+        scree_vec3_dot(a->contacts.tangential_force[c], v) + (scree_vec3_dot(moment, rotation) + normal * turning);
     const scree_real lost = -power * a->time_step - a->contacts.spring_work[c];
     if (a->contacts.is_slipping[c] || (has_extent && a->contacts.is_turning[c])) sums->friction += lost;
     else sums->damping += lost;

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Kernels keep to the common subset of C17 and CUDA C++ and to arithmetic that is the same everywhere; each kernel that
-# is launched on the CPU is launched in a .cu file too.
+# is launched on the CPU is launched in a .cu file too, and by a test of the CUDA side.
 . "$(dirname "$0")/common.sh"
 mapfile -t kernels < <(find src -name '*_kernel.h' -o -path src/core/vec.h -o -path src/core/exact_arith.h | LC_ALL=C sort)
 : >"$scratch/faults"
@@ -32,4 +32,8 @@ done < <(grep -rlw 'fmaf\?' src | LC_ALL=C sort)
 
 launches() { find src -name "$1" -exec cat {} + | sed -n 's/^SCREE_DEFINE_LAUNCH\(_[A-Z]*\)\?(\([a-z0-9_]*\)).*/\2/p' | sort -u; }
 comm -23 <(launches '*.c') <(launches '*.cu') | sed 's/$/: has an OpenMP loop but no grid in a .cu file/' >>"$scratch/faults"
+launches '*.cu' | while read -r kernel; do
+    grep -qE "\($kernel\)|, $kernel,|${kernel}_launch_cuda\(" tests/cuda_on_cpu/*.cu ||
+        echo "$kernel: is launched on the device, but by no test in tests/cuda_on_cpu (see test_kernels.cu there)"
+done >>"$scratch/faults"
 finish "kernel headers" ${#kernels[@]} "$scratch/faults"

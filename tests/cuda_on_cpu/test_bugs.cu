@@ -115,23 +115,23 @@ static void run_kernel(void (*kernel)(Parameters...), unsigned grid, unsigned bl
 {
     device_array<int> values(BLOCK);
     values.fill(0);
-    SCREE_CUDA(start_kernel(kernel, grid, block, values.data, arguments...));
-    SCREE_CUDA(cudaDeviceSynchronize());
+    MUST_CUDA(start_kernel(kernel, grid, block, values.data, arguments...));
+    MUST_CUDA(cudaDeviceSynchronize());
 }
 
 static void run_hand_over(bool is_sound)
 {
     device_array<int> values(3), arrivals(1);
     arrivals.fill(0);
-    SCREE_CUDA(start_kernel(hand_over, 2, BLOCK, values.data, arrivals.data, is_sound));
-    SCREE_CUDA(cudaDeviceSynchronize());
+    MUST_CUDA(start_kernel(hand_over, 2, BLOCK, values.data, arrivals.data, is_sound));
+    MUST_CUDA(cudaDeviceSynchronize());
 }
 
 static void give_host_address()
 {
     std::vector<int> values(BLOCK);
     const arguments_with_address arguments = {BLOCK, values.data()};
-    SCREE_CUDA(start_kernel(write_through, 1, BLOCK, arguments));
+    MUST_CUDA(start_kernel(write_through, 1, BLOCK, arguments));
 }
 
 static void copy_host_address()
@@ -151,34 +151,34 @@ static void copy_the_wrong_way()
 {
     const device_array<int> values(BLOCK);
     int here[BLOCK] = {0};
-    SCREE_CUDA(cudaMemcpy(values.data, here, sizeof here, cudaMemcpyDeviceToHost));
+    MUST_CUDA(cudaMemcpy(values.data, here, sizeof here, cudaMemcpyDeviceToHost));
 }
 
 static void use_after_free()
 {
     int *data;
-    SCREE_CUDA(cudaMalloc(&data, BLOCK * sizeof *data));
-    SCREE_CUDA(cudaFree(data));
-    SCREE_CUDA(start_kernel(write_at, 1, 1, data, 0));
-    SCREE_CUDA(cudaDeviceSynchronize());
+    MUST_CUDA(cudaMalloc(&data, BLOCK * sizeof *data));
+    MUST_CUDA(cudaFree(data));
+    MUST_CUDA(start_kernel(write_at, 1, 1, data, 0));
+    MUST_CUDA(cudaDeviceSynchronize());
 }
 
 static void free_twice()
 {
     int *data;
-    SCREE_CUDA(cudaMalloc(&data, BLOCK * sizeof *data));
-    SCREE_CUDA(cudaFree(data));
-    SCREE_CUDA(cudaFree(data));
+    MUST_CUDA(cudaMalloc(&data, BLOCK * sizeof *data));
+    MUST_CUDA(cudaFree(data));
+    MUST_CUDA(cudaFree(data));
 }
 
 static void give_too_little_scratch()
 {
     const device_array<int> values(BLOCK), sums(BLOCK);
     size_t num_bytes = 0;
-    SCREE_CUDA(cub::DeviceScan::ExclusiveSum(nullptr, num_bytes, values.data, sums.data, BLOCK));
+    MUST_CUDA(cub::DeviceScan::ExclusiveSum(nullptr, num_bytes, values.data, sums.data, BLOCK));
     const device_array<char> scratch(num_bytes);
     num_bytes /= 2;
-    SCREE_CUDA(cub::DeviceScan::ExclusiveSum(scratch.data, num_bytes, values.data, sums.data, BLOCK));
+    MUST_CUDA(cub::DeviceScan::ExclusiveSum(scratch.data, num_bytes, values.data, sums.data, BLOCK));
 }
 
 struct bug_case

@@ -1,5 +1,5 @@
-// Every kernel of the step on the emulated device, on the data of a running scene: the same bits as on the CPU, for
-// every size of block and every schedule.
+// Every kernel of the step on the device, emulated or real, on the data of a running scene: the same bits as on the
+// CPU, for every size of block and every schedule.
 #define _XOPEN_SOURCE 700
 extern "C"
 {
@@ -252,9 +252,9 @@ static void sort_on(side &where, uint64_t *&keys, int32_t *&values, int64_t num,
     cub::DoubleBuffer<uint64_t> both_keys(keys, where.make<uint64_t>(num));
     cub::DoubleBuffer<int32_t> both_values(values, where.make<int32_t>(num));
     size_t num_bytes = 0;
-    SCREE_CUDA(cub::DeviceRadixSort::SortPairs(nullptr, num_bytes, both_keys, both_values, num, first_bit, 64));
+    MUST_CUDA(cub::DeviceRadixSort::SortPairs(nullptr, num_bytes, both_keys, both_values, num, first_bit, 64));
     char *scratch = where.make<char>((int64_t)num_bytes);
-    SCREE_CUDA(cub::DeviceRadixSort::SortPairs(scratch, num_bytes, both_keys, both_values, num, first_bit, 64));
+    MUST_CUDA(cub::DeviceRadixSort::SortPairs(scratch, num_bytes, both_keys, both_values, num, first_bit, 64));
     keys = both_keys.Current();
     values = both_values.Current();
 }
@@ -650,6 +650,7 @@ static void test_wall_loads()
 
 int main()
 {
+    if (is_without_device()) return SKIPPED;
     scene_run_start(&run, scene_text);
     scene_run_until(&run, 0.05);
     if (run.simulation == nullptr) return EXIT_FAILURE;

@@ -39,7 +39,7 @@ struct side
     {
         const size_t num_bytes = (static_cast<size_t>(num) + 1) * sizeof(T);
         void *array = nullptr;
-        if (is_device) SCREE_CUDA(cudaMalloc(&array, num_bytes));
+        if (is_device) MUST_CUDA(cudaMalloc(&array, num_bytes));
         else
         {
             array = std::malloc(num_bytes);
@@ -51,7 +51,7 @@ struct side
     template <class T> T *zeros(int64_t num)
     {
         T *array = make<T>(num);
-        if (is_device) SCREE_CUDA(cudaMemset(array, 0, static_cast<size_t>(num) * sizeof(T)));
+        if (is_device) MUST_CUDA(cudaMemset(array, 0, static_cast<size_t>(num) * sizeof(T)));
         else std::memset(static_cast<void *>(array), 0, static_cast<size_t>(num) * sizeof(T));
         return array;
     }
@@ -80,7 +80,7 @@ struct side
     template <class T> void move(T *to, const T *from, int64_t num, cudaMemcpyKind kind)
     {
         const size_t num_bytes = static_cast<size_t>(num) * sizeof(T);
-        if (is_device) SCREE_CUDA(cudaMemcpy(to, from, num_bytes, kind));
+        if (is_device) MUST_CUDA(cudaMemcpy(to, from, num_bytes, kind));
         else std::memcpy(static_cast<void *>(to), from, num_bytes);
     }
 };

@@ -236,6 +236,9 @@ cudaError_t cudaLaunchKernelEx(const cudaLaunchConfig_t *config, void (*kernel)(
     return static_cast<cudaError_t>(cuda_on_cpu::launch(name, shape, [kernel, copies] { std::apply(kernel, copies); }));
 }
 
+/// For tests of what only the emulation promises.
+#define CUDA_ON_CPU 1
+
 // from here on the sources see a device of compute capability 8.0
 #define __CUDACC__ 1
 #define __CUDA_ARCH__ 800

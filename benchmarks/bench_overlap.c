@@ -16,6 +16,7 @@ typedef struct bench_pairs
     int num;
 } bench_pairs;
 
+static bool use_convex;
 static uint64_t random_state = 20240611;
 
 static double uniform(void)
@@ -62,7 +63,7 @@ static int compute(const scree_shape *shape, const scree_pose *a, const scree_po
 /// Poses that touch: B comes along a random line until it touches, then goes on by the indentation.
 static void make_pairs(const scree_shape *shape, scree_overlap_workspace *workspace, bench_pairs *pairs)
 {
-    const scree_overlap_options options = {SCREE_OVERLAP_FILTERED, false, false};
+    const scree_overlap_options options = {SCREE_OVERLAP_FILTERED, false, use_convex};
     for (int i = 0; i < pairs->num;)
     {
         scree_pose a = {{0, 0, 0}, random_orientation(), 1};
@@ -123,7 +124,7 @@ static void bench_shape(const char *name, const scree_shape *shape, int num)
     bench_pairs pairs = {malloc((size_t)num * sizeof(scree_pose)), malloc((size_t)num * sizeof(scree_pose)), num};
     if (workspace == NULL || pairs.a == NULL || pairs.b == NULL) exit(1);
     make_pairs(shape, workspace, &pairs);
-    scree_overlap_options options = {SCREE_OVERLAP_FILTERED, false, false};
+    scree_overlap_options options = {SCREE_OVERLAP_FILTERED, false, use_convex};
     const double filtered = time_pairs(shape, &pairs, &options, workspace);
     options.scheme = SCREE_OVERLAP_HIERARCHY;
     const double hierarchy = time_pairs(shape, &pairs, &options, workspace);

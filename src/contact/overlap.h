@@ -25,7 +25,7 @@ typedef struct scree_overlap_options
 {
     scree_overlap_scheme scheme;
     bool separate_patches; ///< connected pieces of the overlap as contacts of their own, instead of one for all
-    bool use_convex_path;  ///< no effect yet: convex shapes take the general path
+    bool use_convex_path;  ///< two convex shapes are clipped by planes where every sign is certain: the same, sooner
 } scree_overlap_options;
 
 /// One contact between bodies A and B, in world axes.

@@ -3,6 +3,7 @@
 #ifndef SCREE_OVERLAP_KERNEL_H
 #define SCREE_OVERLAP_KERNEL_H
 
+#include "contact/overlap_convex_kernel.h"
 #include "contact/overlap_crossings_kernel.h"
 #include "contact/overlap_direction_kernel.h"
 #include "contact/overlap_patches_kernel.h"
@@ -242,11 +243,15 @@ SCREE_FN scree_overlap_status scree_overlap_find(const scree_overlap_pair *pair,
     if (scree_overlap_spheres_apart(pair) || !scree_overlap_set_up(pair, setup)) return SCREE_OVERLAP_NONE;
     if (!scree_overlap_filter(slice, setup))
         return slice->lack != SCREE_LACK_NOTHING ? SCREE_OVERLAP_WORKSPACE_FULL : SCREE_OVERLAP_NONE;
+    const bool is_convex = options->use_convex_path && pair->shape[0]->is_convex && pair->shape[1]->is_convex;
     scree_overlap_scheme scheme = options->scheme;
     for (;;)
     {
         scree_overlap_prepare(slice, scheme);
-        if (!scree_overlap_collect(slice, pair->shape)) return SCREE_OVERLAP_WORKSPACE_FULL;
+        const bool is_simple =
+            is_convex && scheme == SCREE_OVERLAP_FILTERED && scree_convex_collect(slice, pair->shape);
+        if (is_convex && !is_simple) scree_overlap_prepare(slice, scheme);
+        if (!is_simple && !scree_overlap_collect(slice, pair->shape)) return SCREE_OVERLAP_WORKSPACE_FULL;
         slice->num_patches = 1;
         scree_overlap_sum(slice, pair->shape, 0, sums);
         if (!slice->is_closed) sums->residual = scree_max(sums->residual, 1);

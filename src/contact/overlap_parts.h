@@ -23,6 +23,7 @@ typedef struct scree_overlap_triangle
 typedef struct scree_overlap_vertex
 {
     scree_vec3 point;
+    uint64_t above;   ///< planes of the other body that it is above of, on the convex path
     scree_real depth; ///< in the other's half-space; < 0: beyond it
     int32_t id;       ///< in the shape
     int32_t inside;   ///< how often it lies inside the other body: 0 or 1
@@ -34,6 +35,7 @@ typedef struct scree_kept_triangle
 {
     int32_t v[3];     ///< among the body's vertices here
     int32_t id;       ///< in the shape
+    int32_t face;     ///< place of the triangle that stands for its flat face; itself, but on the convex path
     bool is_finished; ///< its scree_overlap_triangle is there
 } scree_kept_triangle;
 

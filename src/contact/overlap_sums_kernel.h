@@ -167,6 +167,9 @@ SCREE_FN void scree_overlap_sum_intervals(scree_overlap_slice *slice, int32_t si
                 slice->is_closed = false;
                 continue;
             }
+            const int32_t left_face = body->kept[t].face;
+            const int32_t right_face = body->kept[right].face;
+            if (left_face == right_face) continue;
             scree_interval_walk_start(body, t, k, &walk);
             scree_overlap_interval interval;
             while (scree_overlap_next_interval(slice, body, &walk, &interval))
@@ -174,8 +177,8 @@ SCREE_FN void scree_overlap_sum_intervals(scree_overlap_slice *slice, int32_t si
                 if (slice->num_patches > 1 && *scree_overlap_patch_of(slice, interval.corner[0]) != patch) continue;
                 const scree_vec3 x = scree_vec3_sub(interval.point[0], sums->middle);
                 const scree_vec3 y = scree_vec3_sub(interval.point[1], sums->middle);
-                scree_overlap_add_edge(sums, x, y, body->triangles + t, scree_overlap_finish(body, right),
-                                       scree_vec3_cross(x, y));
+                scree_overlap_add_edge(sums, x, y, scree_overlap_finish(body, left_face),
+                                       scree_overlap_finish(body, right_face), scree_vec3_cross(x, y));
             }
         }
     }

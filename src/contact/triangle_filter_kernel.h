@@ -273,6 +273,7 @@ SCREE_FN void scree_filter_enter(scree_overlap_body *body)
     for (int32_t t = 0; t < body->num_triangles; ++t)
     {
         body->kept[t].is_finished = false;
+        body->kept[t].face = t;
         body->triangle_slot[body->kept[t].id] = t;
     }
 }

@@ -2,6 +2,8 @@
 /// Puts a mesh into its frame and builds what the narrow phase needs: neighbours, tree, box, measures.
 #include "polyhedra/shape.h"
 
+#include "core/exact_arith.h"
+
 #include <stdlib.h>
 
 /// Shift below which the mesh's origin counts as its centroid, over the bounding radius.
@@ -77,6 +79,40 @@ static scree_status build_trees(scree_shape *shape)
     return status;
 }
 
+/// Joins triangles of a convex shape across edges without an angle, exactly, in the mesh as it was given.
+static scree_status join_flat_faces(scree_shape *shape, const scree_mesh *mesh)
+{
+    const int32_t num = mesh->num_triangles;
+    int32_t *face = malloc(((size_t)num + 1) * sizeof *face);
+    if (face == NULL) return SCREE_OUT_OF_MEMORY;
+    for (int32_t t = 0; t < num; ++t) face[t] = t;
+    bool has_flat = false;
+    for (bool has_changed = true; has_changed;)
+    {
+        has_changed = false;
+        for (int32_t t = 0; t < num; ++t)
+        {
+            const int32_t *v = mesh->triangles[t].v;
+            for (int k = 0; k < 3; ++k)
+            {
+                const int32_t other = shape->neighbours[3 * t + k];
+                if (face[other] >= face[t]) continue;
+                bool is_flat = true;
+                for (int c = 0; c < 3; ++c)
+                    is_flat =
+                        is_flat && scree_orient3d(mesh->vertices[v[0]], mesh->vertices[v[1]], mesh->vertices[v[2]],
+                                                  mesh->vertices[mesh->triangles[other].v[c]]) == 0;
+                if (!is_flat) continue;
+                face[t] = face[other];
+                has_changed = has_flat = true;
+            }
+        }
+    }
+    if (has_flat) shape->flat_faces = face;
+    else free(face);
+    return SCREE_OK;
+}
+
 static scree_status map_support(scree_shape *shape)
 {
     shape->support_map = malloc(SCREE_SUPPORT_VALUES * sizeof *shape->support_map);
@@ -98,6 +134,7 @@ static void fill_view(scree_shape *shape, bool is_convex)
         .tree = shape->tree.view,
         .wide_tree = shape->wide_tree.view,
         .support_map = shape->support_map,
+        .flat_faces = shape->flat_faces,
         .num_vertices = mesh->num_vertices,
         .num_triangles = mesh->num_triangles,
         .is_convex = is_convex,
@@ -123,6 +160,7 @@ scree_status scree_shape_create(scree_shape *shape, const scree_mesh *mesh, scre
     shape->neighbours = malloc((3 * (size_t)mesh->num_triangles + 1) * sizeof *shape->neighbours);
     if (shape->neighbours == NULL) status = SCREE_OUT_OF_MEMORY;
     if (status == SCREE_OK) status = scree_mesh_neighbours(&shape->mesh, shape->neighbours);
+    if (status == SCREE_OK && is_convex) status = join_flat_faces(shape, mesh);
     if (status == SCREE_OK) status = build_trees(shape);
     if (status == SCREE_OK && mesh->num_triangles >= SCREE_LARGE_SHAPE) status = map_support(shape);
     if (status != SCREE_OK)
@@ -162,5 +200,6 @@ void scree_shape_destroy(scree_shape *shape)
     scree_lbvh_destroy(&shape->tree);
     scree_wide_tree_destroy(&shape->wide_tree);
     free(shape->support_map);
+    free(shape->flat_faces);
     *shape = (scree_shape){0};
 }

@@ -30,6 +30,8 @@ typedef struct scree_shape_view
     scree_lbvh_view tree;            ///< over the boxes of the triangles
     scree_wide_tree_view wide_tree;  ///< the same for shapes of at least SCREE_LARGE_SHAPE triangles, else empty
     const float *support_map;        ///< (SCREE_SUPPORT_VALUES) of such shapes, else NULL
+    const int32_t *flat_faces; ///< (num_triangles) first triangle of the flat face of each; NULL if all are alone or
+                               ///< the shape is not convex
     int32_t num_vertices;
     int32_t num_triangles;
     bool is_convex;
@@ -45,6 +47,7 @@ typedef struct scree_shape
     scree_lbvh tree;
     scree_wide_tree wide_tree;
     float *support_map;
+    int32_t *flat_faces;
     scree_mass_properties properties; ///< of the mesh as stored, or of the sphere; in the body frame
     scree_shape_view view;
     double frame_position[3];    ///< origin of the body frame in the frame of the source mesh

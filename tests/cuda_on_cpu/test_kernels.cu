@@ -118,6 +118,7 @@ static const scree_shape_view *shapes_on(side &where)
         view.triangles = where.copy(view.triangles, view.num_triangles);
         view.neighbours = where.copy(view.neighbours, 3 * (int64_t)view.num_triangles);
         view.tree = tree_on(where, view.tree);
+        if (view.flat_faces != nullptr) view.flat_faces = where.copy(view.flat_faces, view.num_triangles);
         scree_wide_tree_view &wide = view.wide_tree;
         if (wide.nodes == nullptr) continue;
         wide.nodes = where.copy(wide.nodes, wide.first_node[wide.num_levels - 1] + 1);

@@ -193,12 +193,22 @@ bool check_bodies(const Pose &world, const Body &a, const Body &b, const Demands
     const Context context(world, demands);
     ++s.num_poses;
     std::string faults;
-    for (scree_overlap_scheme scheme : {SCREE_OVERLAP_FILTERED, SCREE_OVERLAP_HIERARCHY})
+    struct Way
     {
-        const std::string name = scheme == SCREE_OVERLAP_FILTERED ? "filtered" : "hierarchy";
-        const std::string straight = check_result(context, engine.compute(a, b, scheme), s);
+        const char *name;
+        scree_overlap_scheme scheme;
+        bool use_convex_path;
+    };
+    for (const Way &way :
+         {Way{"filtered", SCREE_OVERLAP_FILTERED, false}, Way{"hierarchy", SCREE_OVERLAP_HIERARCHY, false},
+          Way{"convex path", SCREE_OVERLAP_FILTERED, true}})
+    {
+        if (way.use_convex_path && !(a.view()->is_convex && b.view()->is_convex)) continue;
+        const std::string name = way.name;
+        const std::string straight = check_result(context, engine.compute(a, b, way.scheme, way.use_convex_path), s);
         if (!straight.empty()) faults += "\n    " + name + ": " + straight;
-        const std::string swapped = check_result(context, turned_back(engine.compute(b, a, scheme)), s);
+        const std::string swapped =
+            check_result(context, turned_back(engine.compute(b, a, way.scheme, way.use_convex_path)), s);
         if (!swapped.empty()) faults += "\n    " + name + ", swapped: " + swapped;
     }
     if (faults.empty()) return true;

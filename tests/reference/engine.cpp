@@ -129,10 +129,11 @@ std::vector<scree_overlap_result> Engine::run(const Body &a, const Body &b, cons
     }
 }
 
-Result Engine::compute(const Body &a, const Body &b, scree_overlap_scheme scheme)
+Result Engine::compute(const Body &a, const Body &b, scree_overlap_scheme scheme, bool use_convex_path)
 {
     scree_overlap_options options{};
     options.scheme = scheme;
+    options.use_convex_path = use_convex_path;
     const auto results = run(a, b, options, 1);
     if (results.size() != 1) throw std::runtime_error("one result was expected");
     return to_result(results[0], *a.pose());

@@ -67,7 +67,7 @@ class Engine
     Engine(const Engine &) = delete;
     Engine &operator=(const Engine &) = delete;
 
-    Result compute(const Body &a, const Body &b, scree_overlap_scheme scheme);
+    Result compute(const Body &a, const Body &b, scree_overlap_scheme scheme, bool use_convex_path = false);
     /// Seconds of one call, the least of several runs of many.
     double seconds(const Body &a, const Body &b, scree_overlap_scheme scheme);
 

@@ -97,6 +97,8 @@ SCREE_FN int32_t scree_overlap_decide(const scree_face *own, int32_t k, const sc
                                       scree_real tolerance, scree_vec3 *point)
 {
     const scree_line edge = scree_face_side(own, k);
+    const scree_box box = scree_box_of_points(other->p[0], other->p[1], other->p[2]);
+    if (!scree_box_overlaps(scree_box_of_points(edge.p[0], edge.p[1], edge.p[1]), box)) return 0;
     const scree_vec3 along = scree_vec3_sub(edge.p[1], edge.p[0]);
     if (tolerance > 0)
     {

@@ -162,6 +162,7 @@ std::string check_result(const Context &c, const Result &r, Statistics &s)
 {
     Faults faults;
     s.num_fallbacks += r.used_fallback ? 1 : 0;
+    ++s.num_results;
     s.num_touching += r.status == SCREE_OVERLAP_TOUCHING ? 1 : 0;
     if (!is_finite(r))
     {
@@ -281,6 +282,7 @@ void Statistics::add(const Statistics &other)
     num_gross += other.num_gross;
     num_fallbacks += other.num_fallbacks;
     num_touching += other.num_touching;
+    num_results += other.num_results;
     worst_units = std::max(worst_units, other.worst_units);
     worst_negative = std::max(worst_negative, other.worst_negative);
     worst_area = std::max(worst_area, other.worst_area);

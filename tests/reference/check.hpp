@@ -33,6 +33,7 @@ struct Demands
 struct Statistics
 {
     int num_poses = 0, num_failed = 0, num_gross = 0, num_fallbacks = 0, num_touching = 0;
+    int num_results = 0;          ///< of all schemes and orders
     double worst_units = 0;       ///< |dV|
     double worst_negative = 0;    ///< -V, in the same units
     double worst_area = 0;        ///< |dS| / |S|; of poses that demand it

@@ -33,6 +33,7 @@ Result to_result(const scree_overlap_result &r, const scree_pose &pose_a)
     result.radius = double(r.radius);
     result.residual = double(r.residual);
     result.area = to_double(r.area_vector);
+    result.torque = to_double(r.torque_vector);
     result.normal = to_double(r.normal);
     result.centroid = to_double(r.arm) + to_double(pose_a.position);
     result.used_fallback = r.used_fallback;
@@ -137,6 +138,23 @@ Result Engine::compute(const Body &a, const Body &b, scree_overlap_scheme scheme
     const auto results = run(a, b, options, 1);
     if (results.size() != 1) throw std::runtime_error("one result was expected");
     return to_result(results[0], *a.pose());
+}
+
+std::vector<Result> Engine::patches(const Body &a, const Body &b, scree_overlap_scheme scheme)
+{
+    scree_overlap_options options{};
+    options.scheme = scheme;
+    options.separate_patches = true;
+    size_t most = 4;
+    auto results = run(a, b, options, int(most));
+    while (results.size() > most)
+    {
+        most = results.size();
+        results = run(a, b, options, int(most));
+    }
+    std::vector<Result> list;
+    for (const scree_overlap_result &r : results) list.push_back(to_result(r, *a.pose()));
+    return list;
 }
 
 double Engine::seconds(const Body &a, const Body &b, scree_overlap_scheme scheme)

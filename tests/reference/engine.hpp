@@ -55,7 +55,7 @@ struct Result
 {
     scree_overlap_status status = SCREE_OVERLAP_NONE;
     double volume = 0, indentation = 0, radius = 0, residual = 0;
-    Vector area{}, centroid{}, normal{}; ///< centroid absolute
+    Vector area{}, torque{}, centroid{}, normal{}; ///< torque about the centroid, which is absolute
     bool used_fallback = false;
 };
 
@@ -68,6 +68,8 @@ class Engine
     Engine &operator=(const Engine &) = delete;
 
     Result compute(const Body &a, const Body &b, scree_overlap_scheme scheme, bool use_convex_path = false);
+    /// One result per connected piece of the overlap.
+    std::vector<Result> patches(const Body &a, const Body &b, scree_overlap_scheme scheme);
     /// Seconds of one call, the least of several runs of many.
     double seconds(const Body &a, const Body &b, scree_overlap_scheme scheme);
 

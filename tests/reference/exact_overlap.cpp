@@ -256,6 +256,7 @@ struct Sums
     Float volume = Float(0, sum_bits);    // six times, both views averaged
     Float3 moment;                        // 24 times
     Float3 area[2][2];                    // twice; [body][view]
+    Float3 torque;                        // 12 times, of A's surface about the grid's origin
     Float magnitude = Float(0, sum_bits); // of the terms of the volume
     double total_area = 0, coplanar_area = 0;
 };
@@ -299,6 +300,21 @@ struct Weight
     bool inner, outer;
 };
 
+/// 12 times the torque about the grid's origin: three times the middle of a triangle, cross twice its area, in halves.
+void add_torque(Float3 &torque, const Float3 &area, const Float3 &p, const Float3 &q, const Float3 &r, int halves)
+{
+    static thread_local Float3 sum;
+    static thread_local Float product(0, sum_bits);
+    for (int k = 0; k < 3; ++k) sum.v[k] = p.v[k] + q.v[k] + r.v[k];
+    for (int k = 0; k < 3; ++k)
+    {
+        const int i = (k + 1) % 3, j = (k + 2) % 3;
+        product = sum.v[i] * area.v[j];
+        product -= sum.v[j] * area.v[i];
+        torque.v[k] += halves * product;
+    }
+}
+
 void add_polygon(Sums &sums, int body, const Polygon &polygon, Weight weight)
 {
     static thread_local Float3 first, p, q, area;
@@ -330,6 +346,7 @@ void add_polygon(Sums &sums, int body, const Polygon &polygon, Weight weight)
             term *= height;
             sums.moment.v[k] += term;
         }
+        if (body == 0) add_torque(sums.torque, area, first, p, q, halves);
         const double size = length(area) * weight.sign;
         sums.total_area += 0.25 * std::abs(halves) * size;
         if (weight.inner != weight.outer) sums.coplanar_area += (body == 0 ? 0.5 : 0.0) * std::fabs(size);
@@ -535,6 +552,15 @@ void finish(Overlap &result, Sums &sums, const Grid &grid)
         }
         result.area_inner[k] = scaled(Float(sums.area[0][0].v[k] / 2), 2).get_d();
         result.area_outer[k] = scaled(Float(sums.area[0][1].v[k] / 2), 2).get_d();
+        // from the grid's origin to the centroid: less its distance cross the area vector
+        const int i = (k + 1) % 3, j = (k + 2) % 3;
+        Float torque(sums.torque.v[k] / 12, sum_bits);
+        if (sums.volume != 0)
+        {
+            const auto four_areas = [&](int m) { return Float(sums.area[0][0].v[m] + sums.area[0][1].v[m]); };
+            torque -= (sums.moment.v[i] * four_areas(j) - sums.moment.v[j] * four_areas(i)) / sums.volume / 16;
+        }
+        result.torque[k] = scaled(torque, 3).get_d();
         closure.v[k] = sums.area[0][0].v[k] + sums.area[0][1].v[k] + sums.area[1][0].v[k] + sums.area[1][1].v[k];
     }
     result.closure_error = sums.total_area > 0 ? length(closure) / sums.total_area : 0;

@@ -42,6 +42,8 @@ struct Overlap
     /// Area vector of the part of A's surface inside B, seen from just inside and from just outside of A's surface.
     /// They differ where faces are coplanar: there the area vector is not continuous, and any value between is fair.
     Vector area_inner{}, area_outer{};
+    /// Integral of x cross n over the same part of A's surface, x from the centroid; the mean of the two views.
+    Vector torque{};
     double coplanar_area = 0;          ///< area of A's surface in which the two views differ
     double area = 0;                   ///< area of the part of A's surface inside B, and of B's inside A
     std::array<bool, 2> is_crossing{}; ///< some of A's surface is inside B; some of B's inside A

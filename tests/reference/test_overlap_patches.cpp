@@ -242,7 +242,8 @@ void test_ring_in_plate()
 }
 
 /// A tube through a thin plate: no edge of the solid leads from its outer wall to the inner one where the plate's faces
-/// are whole, only the holes in these faces say that both are of one piece. A pin in the tube is another.
+/// are whole, only the holes in these faces say that both are of one piece, and not of the post beside it, which is the
+/// largest. A pin in the tube is another.
 void test_tube_through_plate()
 {
     Engine engine;
@@ -251,12 +252,15 @@ void test_tube_through_plate()
         const Mesh plate = box({middle - 12, -middle - 12, 0.0625}, {middle + 12, -middle + 12, 0.125});
         for (const int num_corners : {4, 12})
         {
-            const Mesh a = shifted(ring(0.5, num_corners, 0.5), {0, 0, 0.25});
+            const Mesh tube = shifted(ring(0.5, num_corners, 0.5), {0, 0, 0.25});
+            const Mesh a = joined(tube, box({2, 0, -1}, {4, 2, 1}));
             const Patch of_ring = {ring_area(num_corners, 0.5) / 16, {0, 0, 0.09375}, {0, 0, 0}, {0, 0, 0}};
-            check_patches(a, plate, {of_ring}, engine);
+            const Patch of_post = {0.25, {3, 1, 0.09375}, {0, 0, 0}, {0, 0, 0}};
+            check_patches(tube, plate, {of_ring}, engine);
+            check_patches(a, plate, {of_ring, of_post}, engine);
             const Mesh pin = box({-0.25, 0, 0.109375}, {-0.125, 0.125, 1});
             const Patch of_pin = {1.0 / 4096, {-0.1875, 0.0625, 0.1171875}, {0, 0, -1.0 / 64}, {0, 0, 0}};
-            check_patches(joined(a, pin), plate, {of_ring, of_pin}, engine);
+            check_patches(joined(a, pin), plate, {of_ring, of_post, of_pin}, engine);
         }
     }
 }

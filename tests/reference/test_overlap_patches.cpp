@@ -307,7 +307,9 @@ void test_torque_is_exact()
         const Body a(pose.a), b(pose.b);
         for (const bool is_swapped : {false, true})
         {
-            const Result r = is_swapped ? engine.compute(b, a, schemes[i % 2]) : engine.compute(a, b, schemes[i % 2]);
+            const Body &one = is_swapped ? b : a, &two = is_swapped ? a : b;
+            const bool use_convex_path = i % 4 < 2;
+            const Result r = engine.compute(one, two, schemes[i % 2], use_convex_path);
             if (r.status != SCREE_OVERLAP_TOUCHING) continue;
             const double reach = r.radius + r.indentation, sign = is_swapped ? -1 : 1;
             const double error = norm(sign * r.torque - exact.torque) / (exact.area * reach);

@@ -42,7 +42,7 @@ SCREE_FN bool scree_sphere_sphere_contact(scree_vec3 between, scree_real sum_of_
 {
     if (!scree_spheres_touch(between, sum_of_radii)) return false;
     const scree_real distance = scree_vec3_length(between);
-    contact->normal = scree_vec3_make(between.x / distance, between.y / distance, between.z / distance);
+    contact->normal = scree_vec3_scale(between, 1 / distance);
     contact->indentation = sum_of_radii - distance;
     contact->weight = 1;
     contact->rank = 0;

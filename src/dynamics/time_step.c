@@ -2,9 +2,11 @@
 
 #include <math.h>
 
-/// Depth of a sphere's contact with a plane to expect, over its radius. Half of the critical step is then about 0.3 of
-/// the Rayleigh time, and still below the critical step at sixteen times this depth.
-#define SPHERE_INDENTATION 0.01
+/// Contact radius of a sphere to expect, over its radius: 2 sqrt(1/50), a contact with a plane at an indentation of a
+/// fiftieth of the radius on each of two sides, for in a packing a sphere is held from all sides at once. Half of the
+/// critical step is then 0.18 of the Rayleigh time. At 0.31 of it, a = R/10, a column of soft spheres gained energy as
+/// it collapsed.
+#define SPHERE_CONTACT_RADIUS 0.283
 
 double scree_time_step_critical(const scree_simulation *simulation)
 {
@@ -13,7 +15,7 @@ double scree_time_step_critical(const scree_simulation *simulation)
     for (int64_t i = 0; i < p->num_particles; ++i)
     {
         const scree_shape *shape = simulation->particle_shapes + p->shape[i];
-        const double share = shape->view.kind == SCREE_KIND_SPHERE ? sqrt(SPHERE_INDENTATION) : 0.5;
+        const double share = shape->view.kind == SCREE_KIND_SPHERE ? SPHERE_CONTACT_RADIUS : 0.5;
         const double radius = shape->properties.bounding_radius * (double)p->scale[i];
         double stiffness = 0;
         for (int32_t m = 0; m < simulation->num_materials; ++m)

@@ -3,7 +3,7 @@
 /// of their size (log-uniform). One table: the whole call by the default scheme with and without the convex path and by
 /// the hierarchy. Another: where the time of the general path goes, and how much work there is. Times are CPU times,
 /// the least of several rounds over all pairs, which go on in turn so that each way meets the same state of the
-/// machine. Usage: bench_overlap [number of pairs, default 2000]
+/// machine. Usage: bench_overlap [number of pairs, default 2000] [depth over size, default at random as above]
 #define _POSIX_C_SOURCE 200809L
 #include "contact/overlap_kernel.h"
 #include "polyhedra/generate.h"
@@ -65,7 +65,8 @@ static int compute(const scree_shape *shape, const scree_pose *a, const scree_po
 }
 
 /// Poses that touch: B comes along a random line until it touches, then goes on by the indentation.
-static void make_pairs(const scree_shape *shape, scree_overlap_workspace *workspace, bench_pairs *pairs)
+static void make_pairs(const scree_shape *shape, scree_overlap_workspace *workspace, double wanted_depth,
+                       bench_pairs *pairs)
 {
     const scree_overlap_options options = {SCREE_OVERLAP_FILTERED, false, false};
     for (int i = 0; i < pairs->num;)
@@ -87,6 +88,7 @@ static void make_pairs(const scree_shape *shape, scree_overlap_workspace *worksp
         const double exponent = uniform();
         for (int k = 0; k < 27; ++k)
             if (exponent * 27 > k) depth *= 1.2589254117941673;
+        if (wanted_depth > 0) depth = wanted_depth;
         b.position = scree_vec3_scale(u, (scree_real)(near - depth * 2 * (double)shape->view.bounding_radius));
         scree_overlap_result result;
         if (compute(shape, &a, &b, &options, workspace, &result) != SCREE_OVERLAP_TOUCHING) continue;
@@ -196,12 +198,12 @@ static void time_stages(const scree_shape *shape, const bench_pairs *pairs, scre
     }
 }
 
-static void bench_shape(const char *name, const scree_shape *shape, int num)
+static void bench_shape(const char *name, const scree_shape *shape, int num, double depth)
 {
     scree_overlap_workspace *workspace = scree_overlap_workspace_create();
     bench_pairs pairs = {malloc((size_t)num * sizeof(scree_pose)), malloc((size_t)num * sizeof(scree_pose)), num};
     if (workspace == NULL || pairs.a == NULL || pairs.b == NULL) exit(1);
-    make_pairs(shape, workspace, &pairs);
+    make_pairs(shape, workspace, depth, &pairs);
     static const scree_overlap_options ways[] = {{SCREE_OVERLAP_FILTERED, false, true},
                                                  {SCREE_OVERLAP_FILTERED, false, false},
                                                  {SCREE_OVERLAP_HIERARCHY, false, false}};
@@ -220,29 +222,30 @@ static void bench_shape(const char *name, const scree_shape *shape, int num)
     scree_overlap_workspace_destroy(workspace);
 }
 
-static void bench_mesh(const char *name, scree_mesh *mesh, int num)
+static void bench_mesh(const char *name, scree_mesh *mesh, int num, double depth)
 {
     scree_shape shape = {0};
     if (scree_shape_create(&shape, mesh, SCREE_FRAME_PRINCIPAL) != SCREE_OK) exit(1);
     scree_mesh_destroy(mesh);
-    bench_shape(name, &shape, num);
+    bench_shape(name, &shape, num, depth);
     scree_shape_destroy(&shape);
 }
 
 int main(int argc, char **argv)
 {
     const int num = argc > 1 ? atoi(argv[1]) : 2000;
+    const double depth = argc > 2 ? atof(argv[2]) : 0;
     const double cube[3] = {1, 1, 1};
     printf("%-12s %5s  %7s %7s %7s  | %6s %6s %6s %6s %6s  | %5s %6s %5s %5s\n", "[us]", "faces", "default", "general",
            "hierar.", "frame", "filter", "cross.", "sums", "result", "kept", "pairs", "segm.", "in");
     scree_mesh mesh = {0};
-    if (scree_generate_tetrahedron(&mesh, 1) == SCREE_OK) bench_mesh("tetrahedron", &mesh, num);
-    if (scree_generate_schoenhardt(&mesh, 1) == SCREE_OK) bench_mesh("Schoenhardt", &mesh, num);
-    if (scree_generate_box(&mesh, cube) == SCREE_OK) bench_mesh("cube", &mesh, num);
-    if (scree_generate_sphere(&mesh, 1, 40) == SCREE_OK) bench_mesh("sphere", &mesh, num);
-    if (scree_generate_rock(&mesh, 1, 40, 0) == SCREE_OK) bench_mesh("rock", &mesh, num);
-    if (scree_generate_rock(&mesh, 1, 100, 0) == SCREE_OK) bench_mesh("rock", &mesh, num);
-    if (scree_generate_rock(&mesh, 1, 300, 0) == SCREE_OK) bench_mesh("rock", &mesh, num / 2);
-    if (scree_generate_rock(&mesh, 1, 1000, 0) == SCREE_OK) bench_mesh("rock", &mesh, num / 4);
+    if (scree_generate_tetrahedron(&mesh, 1) == SCREE_OK) bench_mesh("tetrahedron", &mesh, num, depth);
+    if (scree_generate_schoenhardt(&mesh, 1) == SCREE_OK) bench_mesh("Schoenhardt", &mesh, num, depth);
+    if (scree_generate_box(&mesh, cube) == SCREE_OK) bench_mesh("cube", &mesh, num, depth);
+    if (scree_generate_sphere(&mesh, 1, 40) == SCREE_OK) bench_mesh("sphere", &mesh, num, depth);
+    if (scree_generate_rock(&mesh, 1, 40, 0) == SCREE_OK) bench_mesh("rock", &mesh, num, depth);
+    if (scree_generate_rock(&mesh, 1, 100, 0) == SCREE_OK) bench_mesh("rock", &mesh, num, depth);
+    if (scree_generate_rock(&mesh, 1, 300, 0) == SCREE_OK) bench_mesh("rock", &mesh, num / 2, depth);
+    if (scree_generate_rock(&mesh, 1, 1000, 0) == SCREE_OK) bench_mesh("rock", &mesh, num / 4, depth);
     return 0;
 }

@@ -134,36 +134,44 @@ SCREE_FN bool scree_convex_add_end(scree_overlap_slice *slice, int32_t face_a, i
     return true;
 }
 
-/// Records the crossing of side k of triangle t, whose other triangle is `right`, with a plane. False if it is too many
-/// or does not fit to the others.
-SCREE_FN bool scree_convex_add_crossing(scree_overlap_slice *slice, int32_t is_of_b, int32_t t, int32_t k,
-                                        int32_t right, int32_t through, const scree_line *line,
+/// An edge between two faces of a body.
+typedef struct scree_convex_edge
+{
+    scree_line line;
+    int32_t is_of_b;
+    int32_t triangle, side; ///< kept triangle in which it runs up its vertex ids, and the side of it
+    int32_t right;          ///< its other triangle
+} scree_convex_edge;
+
+/// Records the crossing of an edge with the plane of triangle `through`. False if it is too many or does not fit to the
+/// others.
+SCREE_FN bool scree_convex_add_crossing(scree_overlap_slice *slice, const scree_convex_edge *edge, int32_t through,
                                         const scree_convex_cut *cut, int32_t sign)
 {
     if (slice->num_crossings == slice->max_crossings) return false;
     const int32_t c = slice->num_crossings++;
-    scree_overlap_body *body = slice->body + is_of_b;
+    scree_overlap_body *body = slice->body + edge->is_of_b;
     scree_overlap_crossing *crossing = slice->crossings + c;
     const int32_t nearer = scree_abs(cut->height[0]) <= scree_abs(cut->height[1]) ? 0 : 1;
-    const scree_vec3 along = scree_vec3_sub(line->p[1 - nearer], line->p[nearer]);
+    const scree_vec3 along = scree_vec3_sub(edge->line.p[1 - nearer], edge->line.p[nearer]);
     const scree_real part = cut->height[nearer] / (cut->height[nearer] - cut->height[1 - nearer]);
-    crossing->point = scree_vec3_add_scaled(line->p[nearer], along, part);
-    crossing->triangle = t;
-    crossing->side = k;
+    crossing->point = scree_vec3_add_scaled(edge->line.p[nearer], along, part);
+    crossing->triangle = edge->triangle;
+    crossing->side = edge->side;
     crossing->through = through;
     crossing->sign = sign;
-    crossing->is_of_b = is_of_b;
+    crossing->is_of_b = edge->is_of_b;
     crossing->patch = 0;
     crossing->next = -1;
-    int32_t *link = body->triangles[t].crossing + k;
+    int32_t *link = body->triangles[edge->triangle].crossing + edge->side;
     while (*link >= 0) link = &slice->crossings[*link].next;
     *link = c;
 
     // around the part of a face inside the other body: a segment of A runs from a leaving side to an entering one
-    const int32_t end_left = (sign > 0) == (is_of_b != 0) ? 0 : 1;
-    const int32_t left_face = body->kept[t].face;
-    const int32_t right_face = body->kept[right].face;
-    if (is_of_b)
+    const int32_t end_left = (sign > 0) == (edge->is_of_b != 0) ? 0 : 1;
+    const int32_t left_face = body->kept[edge->triangle].face;
+    const int32_t right_face = body->kept[edge->right].face;
+    if (edge->is_of_b)
         return scree_convex_add_end(slice, through, left_face, end_left, c) &&
                scree_convex_add_end(slice, through, right_face, 1 - end_left, c);
     return scree_convex_add_end(slice, left_face, through, end_left, c) &&
@@ -179,15 +187,18 @@ SCREE_FN bool scree_convex_clip_edge(scree_overlap_slice *slice, int32_t is_of_b
     const scree_overlap_vertex *v0 = body->vertices + kept->v[k];
     const scree_overlap_vertex *v1 = body->vertices + kept->v[scree_next_corner(k)];
     if (v0->id > v1->id || (v0->above & v1->above) != 0 || (v0->above | v1->above) == 0) return true;
-    const int32_t right = scree_kept_neighbour(body, shape, t, k);
-    if (right < 0 || body->kept[right].face == kept->face) return true;
+    scree_convex_edge edge;
+    edge.right = scree_kept_neighbour(body, shape, t, k);
+    if (edge.right < 0 || body->kept[edge.right].face == kept->face) return true;
     scree_overlap_finish(body, t);
-    scree_line line;
-    line.p[0] = v0->point;
-    line.p[1] = v1->point;
+    edge.line.p[0] = v0->point;
+    edge.line.p[1] = v1->point;
+    edge.is_of_b = is_of_b;
+    edge.triangle = t;
+    edge.side = k;
     scree_convex_cut enter, leave;
-    const bool is_certain = scree_convex_cut_line(planes, v0->above, &line, true, &enter) &&
-                            scree_convex_cut_line(planes, v1->above, &line, false, &leave);
+    const bool is_certain = scree_convex_cut_line(planes, v0->above, &edge.line, true, &enter) &&
+                            scree_convex_cut_line(planes, v1->above, &edge.line, false, &leave);
     if (!is_certain) return false;
     if (enter.plane >= 0 && leave.plane >= 0)
     {
@@ -195,11 +206,9 @@ SCREE_FN bool scree_convex_clip_edge(scree_overlap_slice *slice, int32_t is_of_b
         if (enter.part - leave.part > margin) return true;
         if (leave.part - enter.part <= margin) return false;
     }
-    if (enter.plane >= 0 &&
-        !scree_convex_add_crossing(slice, is_of_b, t, k, right, planes->triangle[enter.plane], &line, &enter, 1))
+    if (enter.plane >= 0 && !scree_convex_add_crossing(slice, &edge, planes->triangle[enter.plane], &enter, 1))
         return false;
-    return leave.plane < 0 ||
-           scree_convex_add_crossing(slice, is_of_b, t, k, right, planes->triangle[leave.plane], &line, &leave, -1);
+    return leave.plane < 0 || scree_convex_add_crossing(slice, &edge, planes->triangle[leave.plane], &leave, -1);
 }
 
 /// Segments, crossings and inside counts of two convex bodies. False if the general path has to find them.

@@ -4,8 +4,8 @@
 /// from x to y, has a face of the solid on its left and one on its right, whose planes have the feet q of C:
 ///     6 V = sum over edges (q_left - q_right) . (x cross y)
 ///     2 S = sum over segments x cross y
-///     -6 T = sum over segments (y - x) (x . x + x . y + y . y), T the integral of r cross n over the part of A's
-///     surface 24 M = sum over edges and both of their faces q . (x cross y) (q + x + y)
+///     -6 M = sum over segments (y - x) (x . x + x . y + y . y)              M: torque vector, by Stokes
+///     24 F = sum over edges and both of their faces q . (x cross y) (q + x + y)   F: first moment
 /// Each term is a tetrahedron (C, q, x, y), signed; everything is relative to C. The cusps of Franklin & Kankanhalli
 /// (1993), "Volumes from overlaying 3-D triangulations in parallel", are these terms split at the foot of C on the
 /// edge; taken whole they stay accurate where the two faces are nearly parallel, and need no foot on edges.

@@ -140,6 +140,7 @@ Result Engine::compute(const Body &a, const Body &b, scree_overlap_scheme scheme
     return to_result(results[0], *a.pose());
 }
 
+<<<<<<< HEAD
 std::vector<Result> Engine::patches(const Body &a, const Body &b, scree_overlap_scheme scheme)
 {
     scree_overlap_options options{};
@@ -158,9 +159,13 @@ std::vector<Result> Engine::patches(const Body &a, const Body &b, scree_overlap_
 }
 
 double Engine::seconds(const Body &a, const Body &b, scree_overlap_scheme scheme)
+=======
+double Engine::seconds(const Body &a, const Body &b, scree_overlap_scheme scheme, bool use_convex_path)
+>>>>>>> 2298eb2 (Theory of the overlap as it is; edges of the convex path as a structure)
 {
     scree_overlap_options options{};
     options.scheme = scheme;
+    options.use_convex_path = use_convex_path;
     run(a, b, options, 1); // the workspace is large enough from here on
     using clock = std::chrono::steady_clock;
     double best = HUGE_VAL;

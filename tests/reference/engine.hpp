@@ -71,7 +71,7 @@ class Engine
     /// One result per connected piece of the overlap.
     std::vector<Result> patches(const Body &a, const Body &b, scree_overlap_scheme scheme);
     /// Seconds of one call, the least of several runs of many.
-    double seconds(const Body &a, const Body &b, scree_overlap_scheme scheme);
+    double seconds(const Body &a, const Body &b, scree_overlap_scheme scheme, bool use_convex_path = false);
 
   private:
     std::vector<scree_overlap_result> run(const Body &a, const Body &b, const scree_overlap_options &options,

@@ -26,6 +26,7 @@ CERTIFICATE = FOLDER / "certificate.txt"
 
 ROUTES = [  # key of the lines, precision, text, colour, marker
     ("filtered", "double", "scree, filtered signs (default)", "C0", "o"),
+    ("convex", "double", "scree, filtered signs, convex path (default for convex bodies)", "C9", "P"),
     ("hierarchy", "double", "scree, hierarchy", "C1", "s"),
     ("filtered", "single", "scree, filtered signs, single precision", "C2", "^"),
     ("hierarchy", "single", "scree, hierarchy, single precision", "C4", "v"),
@@ -145,22 +146,51 @@ def table(header, rows):
     return "\n".join(lines + ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows])
 
 
+def default_seconds(line):
+    return line.get("convex_s", line["filtered_s"])
+
+
 def time_table(lines):
     rows = []
     single = groups(lines, "single")
     for key, members in groups(lines, "double").items():
         def ratio(route):
-            values = [x[f"{route}_s"] / x["filtered_s"] for x in members if f"{route}_s" in x]
+            values = [x[f"{route}_s"] / default_seconds(x) for x in members if f"{route}_s" in x]
             return f"{statistics.median(values):.3g}" if values else "-"
 
-        def micro(chosen, route):
-            return f"{1e6 * statistics.median(x[f'{route}_s'] for x in chosen):.3g}" if chosen else "-"
+        def micro(chosen):
+            return f"{1e6 * statistics.median(map(default_seconds, chosen)):.3g}" if chosen else "-"
 
         refused = sum("cgal_exact_s" not in x for x in members)
-        rows.append([key[1], key[0], len(members), micro(members, "filtered"), ratio("hierarchy"),
-                     micro(single.get(key), "filtered"), ratio("cgal_inexact"), ratio("cgal_exact"), refused])
-    header = ["bodies", "triangles each", "poses", "default [µs]", "hierarchy / default", "single [µs]",
+        general = ratio("filtered") if "convex_s" in members[0] else "-"
+        rows.append([key[1], key[0], len(members), micro(members), general, ratio("hierarchy"),
+                     micro(single.get(key)), ratio("cgal_inexact"), ratio("cgal_exact"), refused])
+    header = ["bodies", "triangles each", "poses", "default [µs]", "general / convex path", "hierarchy / default", "single [µs]",
               "CGAL inexact / default", "CGAL exact / default", "refused by CGAL"]
+    return table(header, rows)
+
+
+DEPTHS = [(1e-4, 1e-3), (1e-3, 1e-2), (1e-2, 5e-2)]
+
+
+def growth_table(lines):
+    rows = []
+    for shape in ("rock", "sphere"):
+        first = {}
+        for key, members in groups(lines, "double").items():
+            if key[1] != shape:
+                continue
+            row = [shape, key[0]]
+            for low, high in DEPTHS:
+                values = [default_seconds(x) for x in members if low <= x["depth"] < high]
+                if not values:
+                    row.append("-")
+                    continue
+                middle = statistics.median(values)
+                first.setdefault((low, high), middle)
+                row.append(f"{1e6 * middle:.3g} ({middle / first[(low, high)]:.2g})")
+            rows.append(row)
+    header = ["bodies", "triangles each"] + [f"depth {low:g} to {high:g}" for low, high in DEPTHS]
     return table(header, rows)
 
 
@@ -196,6 +226,7 @@ def write_page(lines):
     cells = {
         "machine": f"{processor()}, {platform.system()}, one thread",
         "times": time_table(lines),
+        "growth": growth_table(lines),
         "errors": error_table(lines),
         "kinds": kind_table(lines, "kind"),
         "lattice": kind_table(lines, "lattice"),

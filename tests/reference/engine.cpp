@@ -140,7 +140,6 @@ Result Engine::compute(const Body &a, const Body &b, scree_overlap_scheme scheme
     return to_result(results[0], *a.pose());
 }
 
-<<<<<<< HEAD
 std::vector<Result> Engine::patches(const Body &a, const Body &b, scree_overlap_scheme scheme)
 {
     scree_overlap_options options{};
@@ -158,10 +157,7 @@ std::vector<Result> Engine::patches(const Body &a, const Body &b, scree_overlap_
     return list;
 }
 
-double Engine::seconds(const Body &a, const Body &b, scree_overlap_scheme scheme)
-=======
 double Engine::seconds(const Body &a, const Body &b, scree_overlap_scheme scheme, bool use_convex_path)
->>>>>>> 2298eb2 (Theory of the overlap as it is; edges of the convex path as a structure)
 {
     scree_overlap_options options{};
     options.scheme = scheme;

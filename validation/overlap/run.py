@@ -81,7 +81,7 @@ def groups(lines, precision):
 
 def times_and_errors(lines, route, precision):
     for key, members in groups(lines, precision).items():
-        pairs = [(x[f"{route}_s"], error_of(x, route)) for x in members if f"{route}_s" in x]
+        pairs = [(x[f"{route}_s"], error_of(x, route)) for x in members if f"{route}_s" in x and f"{route}_volume" in x]
         if pairs:
             yield key, [p[0] for p in pairs], [p[1] for p in pairs]
 

@@ -236,6 +236,69 @@ SCREE_FN void scree_patch_sum(scree_overlap_slice *slice, const scree_shape_view
     scree_overlap_sum(slice, shape, root, sums);
 }
 
+/// Is a point, in the plane of x and y, on the left of the way from a to b? On the way itself it is imagined moved by
+/// +(e1 >> e2), so that the two triangles at an edge agree.
+SCREE_FN bool scree_patch_is_left(scree_vec3 p, scree_vec3 a, scree_vec3 b)
+{
+    const scree_real turn = (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
+    if (turn != 0) return turn > 0;
+    return b.y != a.y ? b.y < a.y : b.x > a.x;
+}
+
+/// How often the ray along +z from a point leaves through triangle a x y: 1, or -1 where it enters. `height` is that of
+/// the point over the plane, whose normal has the given z.
+SCREE_FN int32_t scree_patch_ray_leaves(scree_vec3 p, scree_vec3 a, scree_vec3 x, scree_vec3 y, scree_real height,
+                                        scree_real normal_z)
+{
+    const bool is_below = normal_z > 0 ? height < 0 : height > 0;
+    const bool is_left_of_a = scree_patch_is_left(p, a, x);
+    const bool is_left_of_x = scree_patch_is_left(p, x, y);
+    const bool is_left_of_y = scree_patch_is_left(p, y, a);
+    if (!is_below || is_left_of_a != is_left_of_x || is_left_of_x != is_left_of_y) return 0;
+    return is_left_of_a ? 1 : -1;
+}
+
+/// Does the piece of tree `root` go around a point? Each face is a fan of triangles from a corner of the body's face.
+SCREE_FN bool scree_patch_contains(scree_overlap_slice *slice, const scree_shape_view *const *shape, int32_t root,
+                                   scree_vec3 point)
+{
+    int32_t num_left = 0;
+    scree_edge_walk walk = scree_edge_walk_start();
+    scree_solid_edge edge;
+    while (scree_next_solid_edge(slice, shape, &walk, &edge))
+    {
+        if (scree_patch_root(slice, edge.corner[0]) != root) continue;
+        const scree_face *left = &slice->body[edge.body_left].triangles[edge.face_left].face;
+        const scree_face *right = &slice->body[edge.body_right].triangles[edge.face_right].face;
+        num_left += scree_patch_ray_leaves(point, left->p[0], edge.point[0], edge.point[1],
+                                           scree_face_height(left, point), left->normal.z);
+        num_left += scree_patch_ray_leaves(point, right->p[0], edge.point[1], edge.point[0],
+                                           scree_face_height(right, point), right->normal.z);
+    }
+    return num_left != 0;
+}
+
+/// Joins shells that are turned inside out to the pieces that they are hollows of. `most`: the largest volume, times 6.
+SCREE_FN void scree_patch_join_hollows(scree_overlap_slice *slice, const scree_shape_view *const *shape,
+                                       scree_real most)
+{
+    for (int32_t root = scree_patch_next_root(slice, 0); root >= 0; root = scree_patch_next_root(slice, root + 1))
+    {
+        scree_overlap_sums sums;
+        scree_patch_sum(slice, shape, root, &sums);
+        if (!(sums.six_volume < -1000 * SCREE_REAL_EPSILON * most)) continue;
+        scree_edge_walk walk = scree_edge_walk_start();
+        scree_solid_edge edge;
+        bool has_edge = scree_next_solid_edge(slice, shape, &walk, &edge);
+        while (has_edge && scree_patch_root(slice, edge.corner[0]) != root)
+            has_edge = scree_next_solid_edge(slice, shape, &walk, &edge);
+        int32_t other = has_edge ? scree_patch_next_root(slice, 0) : -1;
+        while (other >= 0 && (other == root || !scree_patch_contains(slice, shape, other, edge.point[0])))
+            other = scree_patch_next_root(slice, other + 1);
+        if (other >= 0) scree_patch_join(slice, root, other);
+    }
+}
+
 /// Labels the corners of the solid by patch, from 0; returns the number of patches. With several, slice->num_patches
 /// is set and sums can be asked of each.
 SCREE_FN int32_t scree_overlap_find_patches(scree_overlap_slice *slice, const scree_shape_view *const *shape)
@@ -247,8 +310,6 @@ SCREE_FN int32_t scree_overlap_find_patches(scree_overlap_slice *slice, const sc
     scree_solid_edge edge;
     while (scree_next_solid_edge(slice, shape, &walk, &edge)) scree_patch_join(slice, edge.corner[0], edge.corner[1]);
 
-    // holes in faces, and hollows: shells that are turned inside out belong to the largest piece
-    int32_t largest = -1;
     scree_real most = 0;
     for (int32_t root = scree_patch_next_root(slice, 0); root >= 0;)
     {
@@ -256,11 +317,7 @@ SCREE_FN int32_t scree_overlap_find_patches(scree_overlap_slice *slice, const sc
         const bool is_only = root == scree_patch_next_root(slice, 0) && scree_patch_next_root(slice, root + 1) < 0;
         if (is_only) break;
         scree_patch_sum(slice, shape, root, &sums);
-        if (sums.six_volume > most)
-        {
-            most = sums.six_volume;
-            largest = root;
-        }
+        most = scree_max(most, sums.six_volume);
         if (scree_patch_join_holes(slice, shape, root))
         {
             root = scree_patch_next_root(slice, 0);
@@ -268,13 +325,7 @@ SCREE_FN int32_t scree_overlap_find_patches(scree_overlap_slice *slice, const sc
         }
         else root = scree_patch_next_root(slice, root + 1);
     }
-    for (int32_t root = scree_patch_next_root(slice, 0); root >= 0; root = scree_patch_next_root(slice, root + 1))
-    {
-        scree_overlap_sums sums;
-        if (largest < 0 || scree_patch_root(slice, largest) == root) continue;
-        scree_patch_sum(slice, shape, root, &sums);
-        if (sums.six_volume < -1000 * SCREE_REAL_EPSILON * most) scree_patch_join(slice, root, largest);
-    }
+    if (most > 0) scree_patch_join_hollows(slice, shape, most);
 
     // roots become labels in their order; a root is never after what hangs on it
     int32_t num = 0;

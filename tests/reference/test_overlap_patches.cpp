@@ -280,6 +280,10 @@ void test_hollows()
     const Vector centroid = {0.5, 0.5, (0.5 - inner * 0.375) / volume};
     // wholly inside: the surface is closed
     check_patches(hollow, box({-1, -1, -1}, {2, 2, 2}), {{volume, centroid, {0, 0, 0}, {0, 0, 0}}}, engine);
+    // beside a larger piece without one
+    const Mesh pair = joined(hollow, box({2, 0, 0}, {4, 2, 2}));
+    check_patches(pair, box({-1, -1, -1}, {5, 3, 3}),
+                  {{volume, centroid, {0, 0, 0}, {0, 0, 0}}, {8, {3, 1, 1}, {0, 0, 0}, {0, 0, 0}}}, engine);
     // cut below the hollow's top, which leaves a cup whose rim has a hole; and above it
     const double cup = 0.375 - 0.25 * 0.125, cut = 0.75 - inner;
     check_patches(hollow, box({-1, -1, -1}, {2, 2, 0.375}),

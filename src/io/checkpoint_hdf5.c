@@ -13,7 +13,6 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -185,32 +184,9 @@ static bool put_everything(hid_t file, const scree_simulation *simulation)
            scree_averages_put(file, simulation);
 }
 
-static scree_status save(const scree_simulation *simulation, const char *temporary, scree_report *report)
-{
-    const hid_t file = scree_hdf5_create(temporary, report);
-    if (file < 0) return SCREE_WRITE_FAILED;
-    bool is_written = put_everything(file, simulation);
-    if (!is_written) scree_hdf5_fault(report, temporary, "written");
-    is_written = is_written && scree_hdf5_reserve(file, true, temporary, report);
-    if (!is_written) scree_hdf5_cut_off(file);
-    const bool is_closed = H5Fclose(file) >= 0;
-    if (is_written && !is_closed) scree_hdf5_fault(report, temporary, "closed");
-    return is_written && is_closed ? SCREE_OK : SCREE_WRITE_FAILED;
-}
-
 scree_status scree_checkpoint_save(const scree_simulation *simulation, const char *path, scree_report *report)
 {
-    const size_t length = strlen(path) + 5;
-    char *temporary = malloc(length);
-    if (temporary == NULL) return SCREE_OUT_OF_MEMORY;
-    snprintf(temporary, length, "%s.tmp", path);
-    const scree_hdf5_printing printing = scree_hdf5_silence();
-    scree_status status = save(simulation, temporary, report);
-    scree_hdf5_restore(printing);
-    if (status == SCREE_OK) status = scree_put_in_place(temporary, path, report);
-    if (status != SCREE_OK) unlink(temporary);
-    free(temporary);
-    return status;
+    return scree_hdf5_save(path, put_everything, simulation, report);
 }
 
 // ---- reading

@@ -2,9 +2,12 @@
 #define _POSIX_C_SOURCE 200809L
 #include "io/hdf5_file.h"
 
+#include "io/run_folder.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
@@ -320,4 +323,34 @@ bool scree_hdf5_get_arrays(hid_t file, const char *name, const scree_field *fiel
         is_done = scree_hdf5_get_array(group, fields + k, scree_field_array(fields + k, structure), num);
     if (group >= 0) H5Gclose(group);
     return is_done;
+}
+
+static scree_status write_all(const char *temporary, scree_hdf5_put put, const scree_simulation *simulation,
+                              scree_report *report)
+{
+    const hid_t file = scree_hdf5_create(temporary, report);
+    if (file < 0) return SCREE_WRITE_FAILED;
+    bool is_written = put(file, simulation);
+    if (!is_written) scree_hdf5_fault(report, temporary, "written");
+    is_written = is_written && scree_hdf5_reserve(file, true, temporary, report);
+    if (!is_written) scree_hdf5_cut_off(file);
+    const bool is_closed = H5Fclose(file) >= 0;
+    if (is_written && !is_closed) scree_hdf5_fault(report, temporary, "closed");
+    return is_written && is_closed ? SCREE_OK : SCREE_WRITE_FAILED;
+}
+
+scree_status scree_hdf5_save(const char *path, scree_hdf5_put put, const scree_simulation *simulation,
+                             scree_report *report)
+{
+    const size_t length = strlen(path) + 5;
+    char *temporary = malloc(length);
+    if (temporary == NULL) return SCREE_OUT_OF_MEMORY;
+    snprintf(temporary, length, "%s.tmp", path);
+    const scree_hdf5_printing printing = scree_hdf5_silence();
+    scree_status status = write_all(temporary, put, simulation, report);
+    scree_hdf5_restore(printing);
+    if (status == SCREE_OK) status = scree_put_in_place(temporary, path, report);
+    if (status != SCREE_OK) unlink(temporary);
+    free(temporary);
+    return status;
 }

@@ -30,6 +30,12 @@ hid_t scree_hdf5_file_type(scree_field_type type);
 /// New file without time stamps, so that equal contents are equal bytes. Not locked: others may read while scree
 /// writes. Negative on failure, as all hid_t; the reason goes to the report.
 hid_t scree_hdf5_create(const char *path, scree_report *report);
+/// Writes the contents of a file; false on failure.
+typedef bool (*scree_hdf5_put)(hid_t file, const scree_simulation *simulation);
+/// A whole file through a temporary name, path.tmp, which is renamed once all is on the disk; silent.
+/// SCREE_WRITE_FAILED, SCREE_OUT_OF_MEMORY: what was at path is still there; the reason goes to the report.
+scree_status scree_hdf5_save(const char *path, scree_hdf5_put put, const scree_simulation *simulation,
+                             scree_report *report);
 /// Existing file. Negative on failure; the reason goes to the report.
 hid_t scree_hdf5_open(const char *path, bool is_writable, scree_report *report);
 /// Makes sure of the disk space of the file's structure (`is_all`: of all it holds) before it is first flushed, since

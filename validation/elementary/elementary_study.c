@@ -1,26 +1,5 @@
 // Single spheres for the study of elementary cases: each line of the output is one JSON object. See README.md.
-#include "sphere_impact.h"
-
-typedef struct solid
-{
-    const char *name;
-    double youngs_modulus, poisson_ratio, density;
-} solid;
-
-/// Solids of Chung & Ooi (2011).
-static const solid glass = {"glass", 48e9, 0.2, 2800}, limestone = {"limestone", 20e9, 0.25, 2500},
-                   al_alloy = {"Al alloy", 70e9, 0.3, 2699}, mg_alloy = {"Mg alloy", 40e9, 0.35, 1800},
-                   al_oxide = {"Al oxide", 380e9, 0.23, 4000}, cast_iron = {"cast iron", 100e9, 0.25, 7000},
-                   steel = {"steel", 208e9, 0.3, 7850}, polyethylene = {"polyethylene", 1e9, 0.4, 1400},
-                   nylon = {"nylon", 2.5e9, 0.4, 1000}, copper = {"copper", 120e9, 0.35, 8900};
-
-static impact_def define(solid of, double radius, double speed)
-{
-    impact_def def = {of.youngs_modulus, of.poisson_ratio, of.density, .restitution = 1};
-    def.body[0].radius = radius;
-    def.body[0].velocity[2] = -speed;
-    return def;
-}
+#include "chung_ooi_solids.h"
 
 static void put_row(const char *test, const char *name, const char *quantity, double expected, double got,
                     const char *from)

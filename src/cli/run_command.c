@@ -253,6 +253,15 @@ static void print_word(const char *word)
     putchar('\'');
 }
 
+/// Where the folder has its checkpoint, if it has one. NULL: out of memory.
+static char *checkpoint_path(const run_state *run)
+{
+    const size_t size = strlen(run->folder_path) + 32;
+    char *path = malloc(size);
+    if (path != NULL) snprintf(path, size, "%s/checkpoint.h5", run->folder_path);
+    return path;
+}
+
 static void print_command_to_go_on(const run_state *run)
 {
     const run_request *request = run->request;
@@ -266,6 +275,20 @@ static void print_command_to_go_on(const run_state *run)
     }
     print_word(request->path);
     putchar('\n');
+}
+
+/// After a stop in a sound state: from where the run can go on, and how.
+static void tell_how_to_go_on(const run_state *run, bool is_saved)
+{
+    char *path = checkpoint_path(run);
+    const bool has_checkpoint = path != NULL && access(path, F_OK) == 0;
+    free(path);
+    printf("stopped at t = %g s, %s\n", scree_simulation_time(run->simulation),
+           is_saved         ? "checkpoint written"
+           : has_checkpoint ? "no checkpoint could be written, one from before is kept"
+                            : "no checkpoint could be written and there is none from before: make room, then start the "
+                              "run anew with --replace");
+    if (has_checkpoint) print_command_to_go_on(run);
 }
 
 // ---- outputs
@@ -332,10 +355,8 @@ static char *default_folder(const char *name)
 /// The checkpoint of the folder into the fresh simulation.
 static scree_status load_checkpoint(run_state *run)
 {
-    const size_t size = strlen(run->folder_path) + 32;
-    char *path = malloc(size);
+    char *path = checkpoint_path(run);
     if (path == NULL) return SCREE_OUT_OF_MEMORY;
-    snprintf(path, size, "%s/checkpoint.h5", run->folder_path);
     const scree_status status = scree_checkpoint_load(run->simulation, path, &run->report);
     if (status == SCREE_NOT_FOUND)
         scree_report_add(&run->report, "start the run anew: with another folder (-o), or with --replace");
@@ -435,9 +456,7 @@ static int conclude(run_state *run, scree_status status)
     const scree_status saved = scree_run_folder_write_checkpoint(run->folder, run->simulation, &run->report);
     if (saved == SCREE_OK) write_summary(run, "interrupted");
     tell_report(run);
-    printf("stopped at t = %g s, %s\n", scree_simulation_time(run->simulation),
-           saved == SCREE_OK ? "checkpoint written" : "no checkpoint could be written, one from before is kept");
-    print_command_to_go_on(run);
+    tell_how_to_go_on(run, saved == SCREE_OK);
     return status == SCREE_INTERRUPTED && saved == SCREE_OK ? 128 + (int)stop_signal : SCREE_EXIT_FAILED;
 }
 

@@ -470,6 +470,21 @@ def test_a_full_disk_is_told_and_can_be_recovered_from(scene, whole, tmp_path):
         subprocess.run(["umount", disk], check=True)
 
 
+def test_a_disk_that_is_full_before_the_first_checkpoint(scene, tmp_path):
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=256k", "tmpfs", disk], capture_output=True)
+    if mounted.returncode != 0:
+        pytest.skip("needs the right to mount a small file system")
+    try:
+        done = run(scene, "-o", disk / "run", "--set", "output.frames=1e-4", "--set", "output.checkpoint=0", expect=1)
+        assert "No space left on device" in done.stderr
+        assert not (disk / "run" / "checkpoint.h5").exists()
+        assert "there is none from before" in done.stdout and "--restart" not in done.stdout
+    finally:
+        subprocess.run(["umount", disk], check=True)
+
+
 # ---- what is printed
 
 

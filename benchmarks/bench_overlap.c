@@ -246,6 +246,7 @@ int main(int argc, char **argv)
     if (scree_generate_rock(&mesh, 1, 40, 0) == SCREE_OK) bench_mesh("rock", &mesh, num, depth);
     if (scree_generate_rock(&mesh, 1, 100, 0) == SCREE_OK) bench_mesh("rock", &mesh, num, depth);
     if (scree_generate_rock(&mesh, 1, 300, 0) == SCREE_OK) bench_mesh("rock", &mesh, num / 2, depth);
+    if (scree_generate_sphere(&mesh, 1, 980) == SCREE_OK) bench_mesh("sphere", &mesh, num, depth);
     if (scree_generate_rock(&mesh, 1, 1000, 0) == SCREE_OK) bench_mesh("rock", &mesh, num / 4, depth);
     return 0;
 }

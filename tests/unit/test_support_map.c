@@ -60,6 +60,16 @@ static scree_vec3 test_direction(int n, uint64_t *state)
     return scree_vec3_make((scree_real)d[0], (scree_real)d[1], (scree_real)d[2]);
 }
 
+/// What is interpolated is p . d with p its gradient (Euler: it is of degree one in d).
+static void check_point(const float *map, scree_vec3 d, double bound, double radius)
+{
+    const scree_vec3 p = scree_support_map_point(map, d);
+    // slopes are differences of values up to sqrt(3) radius times half the number of cells; the bound adds 8 eps radius
+    const double largest = largest_component(d);
+    const double rounding = 8 * (2 * SCREE_SUPPORT_CELLS + 1) * (double)SCREE_REAL_EPSILON * radius * largest;
+    SCREE_CHECK_CLOSE((double)scree_vec3_dot(p, d), bound, rounding);
+}
+
 /// `excess` is what interpolation may add to a unit of the direction's largest component.
 static void check_mesh(const scree_mesh *mesh, double excess, uint64_t seed)
 {
@@ -74,6 +84,7 @@ static void check_mesh(const scree_mesh *mesh, double excess, uint64_t seed)
         const scree_vec3 d = test_direction(n, &state);
         const double exact = support(mesh, d), bound = (double)scree_support_bound(map, d, (scree_real)radius);
         const double most = exact + largest_component(d) * (excess + rounding);
+        check_point(map, d, bound, radius);
         const bool is_right = bound >= exact && bound <= most;
         SCREE_CHECK(is_right);
         if (!is_right)
@@ -134,6 +145,28 @@ static void test_sphere(void)
     check_shifted(&mesh, width * width / 8 * 2 * outer + sqrt(3.0) * (outer - inner), 40);
 }
 
+/// A single vertex is the point of every direction, up to the rounding of the values to float: two of them differ by at
+/// most 3 eps |v| too much, over a cell of 2/SCREE_SUPPORT_CELLS.
+static void test_point_of_vertex(void)
+{
+    static float map[SCREE_SUPPORT_VALUES];
+    const scree_vec3 vertex = {1, -2, 3};
+    scree_support_map_fill(map, &vertex, 1);
+    const double off_axis = 3 * (double)FLT_EPSILON * 6.5 * SCREE_SUPPORT_CELLS / 2;
+    uint64_t state = 60;
+    for (int n = 0; n < 4000; ++n)
+    {
+        const scree_vec3 d = test_direction(n, &state);
+        if (!(largest_component(d) > 0)) continue;
+        const scree_vec3 p = scree_support_map_point(map, d);
+        SCREE_CHECK_CLOSE((double)p.x, 1, 3 * off_axis);
+        SCREE_CHECK_CLOSE((double)p.y, -2, 3 * off_axis);
+        SCREE_CHECK_CLOSE((double)p.z, 3, 3 * off_axis);
+    }
+    const scree_vec3 none = scree_support_map_point(map, scree_vec3_zero());
+    SCREE_CHECK(none.x == 0 && none.y == 0 && none.z == 0);
+}
+
 static void test_no_direction(void)
 {
     static float map[SCREE_SUPPORT_VALUES];
@@ -171,6 +204,7 @@ int main(void)
 {
     SCREE_RUN(test_any_shape);
     SCREE_RUN(test_sphere);
+    SCREE_RUN(test_point_of_vertex);
     SCREE_RUN(test_no_direction);
     SCREE_RUN(test_shapes_have_maps);
     return SCREE_TEST_END();

@@ -1,8 +1,8 @@
 """Errors and times of the overlap against exact arithmetic and CGAL: makes README.md and its plots.
 
-Usage: python run.py [--quick] [--keep]
-  --quick  a twentieth of the poses, to try the script
+Usage: python run.py [--keep]
   --keep   plots and page again from results.jsonl, without computing anything
+QUICK=1 in the environment takes a twentieth of the poses.
 """
 
 import json
@@ -40,11 +40,11 @@ def run(command, **options):
     return subprocess.run([str(part) for part in command], check=True, **options)
 
 
-def compute(is_quick):
+def compute():
     targets = ["overlap_study", "overlap_study_single", "test_overlap_certificate"]
     run(["cmake", "--preset", "release", "--log-level=WARNING"], cwd=ROOT)
     run(["cmake", "--build", BUILD, "--target", *targets], cwd=ROOT)
-    counts = ["4", "6", "1000"] if is_quick else ["60", "60", "50000"]
+    counts = ["4", "6", "1000"] if os.environ.get("QUICK") == "1" else ["60", "60", "50000"]
     environment = dict(os.environ, OMP_NUM_THREADS="1")
     with open(RESULTS, "w") as file:
         for program in targets[:2]:
@@ -246,7 +246,7 @@ def processor():
 
 def main():
     if "--keep" not in sys.argv:
-        compute("--quick" in sys.argv)
+        compute()
     lines = [json.loads(line) for line in RESULTS.read_text().splitlines()]
     plot_error_over_time(lines)
     plot_growth(lines)

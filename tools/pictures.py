@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""All pictures of a run into RUN/pictures: pile, strip, energy, height_map if an angle of repose was measured, and those of
-fields.py if fields were."""
+"""All pictures of a run into RUN/pictures: pile, strip, energy, contact_forces, height_map if an angle of repose was measured,
+and those of fields.py if fields were."""
 import argparse
 
+from contact_forces import draw_contact_forces
 from energy_plot import draw_energies
 from fields import field_pictures
 from flow import save_flow
@@ -16,7 +17,7 @@ def main():
     parser.add_argument("run", help="folder of the run")
     run = Run(parser.parse_args().run)
     load(run, -1)  # refuses a run without frames before anything is written
-    pictures = {"pile": save_pile, "strip": save_flow, "energy": draw_energies}
+    pictures = {"pile": save_pile, "strip": save_flow, "energy": draw_energies, "contact_forces": draw_contact_forces}
     if has_repose(run.summary()):
         pictures["height_map"] = draw_height_map
     if (run.folder / "fields.vtkhdf").exists():

@@ -1,0 +1,238 @@
+"""Merged or separate patches of L-, U- and ring-shaped bodies: force, moment and heaps; makes README.md and its plots.
+
+Usage: python run.py [--keep]
+  --keep   plots and page again from results.json, without computing anything
+QUICK=1 in the environment makes heaps of fewer bodies and seeds. A study that was broken off goes on where it stopped.
+"""
+
+import json
+import math
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+FOLDER = Path(__file__).resolve().parent
+ROOT = FOLDER.parent.parent
+sys.path.insert(0, str(ROOT / "tools"))
+from ensemble import Ensemble  # noqa: E402
+from run_folder import Run  # noqa: E402
+
+PROGRAM = ROOT / "build" / "release" / "scree"
+QUICK = os.environ.get("QUICK") == "1"
+RUNS = ROOT / "runs" / ("patches_quick" if QUICK else "patches")
+RESULTS = FOLDER / "results.json"
+BODIES, SEEDS = (20, 2) if QUICK else (80, 8)
+DEPTH = 0.02  # of the lowest point in the plate, of the size
+SHAPES = ("l_shape", "u_shape", "ring")
+MODES = ("merged", "separate")
+
+
+def turned(axis, degrees):
+    """Quaternion (w, x, y, z)."""
+    half = math.radians(degrees) / 2
+    return np.array([math.cos(half), *(math.sin(half) * np.array(axis) / np.linalg.norm(axis))])
+
+
+def times(p, q):
+    """Product of quaternions: q first, then p."""
+    w = p[0] * q[0] - p[1:] @ q[1:]
+    return np.array([w, *(p[0] * q[1:] + q[0] * p[1:] + np.cross(p[1:], q[1:]))])
+
+
+def matrix(q):
+    w, x, y, z = q
+    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                     [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+                     [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])
+
+
+def model(name):
+    """Vertices and centre of mass of a mesh in models/."""
+    path = ROOT / "models" / f"{name}.obj"
+    vertices = [line.split()[1:4] for line in path.read_text().splitlines() if line.startswith("v ")]
+    told = subprocess.run([PROGRAM, "shape", path], check=True, capture_output=True, text=True).stdout
+    centre = next(line.split()[1:4] for line in told.splitlines() if line.strip().startswith("centroid"))
+    return np.array(vertices, dtype=float), np.array(centre, dtype=float)
+
+
+def poses():
+    """(case, abscissa, pair for scree overlap, centre of mass of the first body)."""
+    plate = {"vertices": [[x, y, z] for x in (-3, 3) for y in (-3, 3) for z in (-1, 0)],
+             "triangles": [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6],
+                           [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]]}
+    starts = {"u_shape": turned((1, 0, 0), -90), "l_shape": times(turned((1, 0, 0), 90), turned((0, 0, 1), 225))}
+    for name, start in starts.items():
+        vertices, centre = model(name)
+        for tilt in np.linspace(0, 3, 61):
+            q = times(turned((0, 1, 0), tilt), start)
+            lowest = (vertices @ matrix(q).T)[:, 2].min()
+            position = np.array([0, 0, -lowest - DEPTH])
+            body = {"mesh": str(ROOT / "models" / f"{name}.obj"), "position": position.tolist(), "orientation": q.tolist()}
+            yield name, tilt, {"a": body, "b": plate}, matrix(q) @ centre + position
+    # a ring linked with a fixed one, clear of it at right angles: turned towards its plane it meets it above and below
+    ring = str(ROOT / "models" / "ring.obj")
+    position = [0.375, 0.0, 0.0]
+    for angle in np.linspace(30, 60, 61):
+        body = {"mesh": ring, "position": position, "orientation": turned((1, 0, 0), angle).tolist()}
+        yield "ring", angle, {"a": body, "b": {"mesh": ring}}, np.array(position)
+
+
+def wrench(pieces, centre):
+    """Elastic force and moment about the centre of mass, c E* = 1, of contacts as hertz_mindlin has them."""
+    force, moment = np.zeros(3), np.zeros(3)
+    for piece in pieces:
+        if piece["normal"] is not None:
+            f = -math.sqrt(piece["volume"] * piece["indentation"]) * np.array(piece["normal"])
+            force += f
+            moment += np.cross(np.array(piece["centroid"]) - centre, f)
+    return force, moment
+
+
+def press():
+    """Force and moment of the cases by mode."""
+    listed = list(poses())
+    RUNS.mkdir(parents=True, exist_ok=True)
+    batch = RUNS / "poses.txt"
+    batch.write_text("".join(json.dumps({"id": str(k)} | pair) + "\n" for k, (_, _, pair, _) in enumerate(listed)))
+    told = {}
+    for mode, options in zip(MODES, ([], ["--patches"]), strict=True):
+        done = subprocess.run([PROGRAM, "overlap", *options, "--batch", batch], check=True, capture_output=True, text=True)
+        told[mode] = [json.loads(line) for line in done.stdout.splitlines()]
+    results = {}
+    for (case, abscissa, _, centre), merged, separate in zip(listed, told["merged"], told["separate"], strict=True):
+        row = {"x": abscissa, "patches": len(separate["patches"])}
+        for mode, pieces in zip(MODES, ([merged], separate["patches"]), strict=True):
+            force, moment = wrench(pieces, centre)
+            row[mode] = [force.tolist(), moment.tolist()]
+        results.setdefault(case, []).append(row)
+    return results
+
+
+def heap_scene(shape):
+    """Bodies of 50 mm that fall from a column and make a heap."""
+    return {
+        "name": f"heap of {shape}", "time": {"end": 1.5},
+        "materials": [{"name": "stone", "density": 2500, "youngs_modulus": 1e7, "poisson_ratio": 0.25}],
+        "contact_laws": [{"materials": ["stone", "stone"], "friction_coefficient": 0.5, "restitution_coefficient": 0.4}],
+        "shapes": [{"name": "body", "source": "file", "file": str(ROOT / "models" / f"{shape}.obj")},
+                   {"name": "plate", "source": "box", "size": [4, 4, 0.1]}],
+        "particles": [{"name": "bodies", "shape": "body", "material": "stone", "count": BODIES, "seed": 1,
+                       "size": {"distribution": "fixed", "mean": 0.05},
+                       "region": {"min": [-0.15, -0.15, 0.005], "max": [0.15, 0.15, 2]}}],
+        "walls": [{"name": "floor", "shape": "plate", "material": "stone", "position": [0, 0, -0.05]}],
+        "output": {"series": 0.01, "frames": 0.5, "checkpoint": 0.5},
+    }
+
+
+def heaps():
+    rows = []
+    for shape in SHAPES:
+        path = RUNS / f"{shape}.yaml"
+        path.write_text(json.dumps(heap_scene(shape), indent=1))
+        varied = [(["solver.separate_patches"], ["false", "true"]),
+                  (["particles.bodies.seed"], [str(k + 1) for k in range(SEEDS)])]
+        ensemble = Ensemble(path, RUNS / shape, varied, program=PROGRAM)
+        failed = ensemble.run()
+        if failed:
+            raise SystemExit(f"{failed[0].folder} did not finish; see messages.txt there")
+        rows += [{"shape": shape, "mode": MODES[member.values["solver.separate_patches"] == "true"]} | measure_heap(member)
+                 for member in ensemble.members]
+    return rows
+
+
+def measure_heap(member):
+    run = Run(member.folder)
+    summary, surfaces = member.summary(), run.surfaces()
+    points = surfaces.read(len(surfaces.times) - 1)["points"]
+    return {
+        "height": summary["energies"]["potential"] / (summary["mass"] * 9.81),
+        "spread": float(np.sqrt((points[:, :2] ** 2).sum(axis=1).mean())),
+        "coordination": summary["counters"]["coordination_number"],
+        "deepest": summary["counters"]["largest_indentation"],
+        "moving": summary["energies"]["kinetic"] + summary["energies"]["rotational"],
+        "balance": abs(summary["energy_error"]), "seconds": summary["wall_seconds"],
+    }
+
+
+def plot_press(results):
+    figure, axes = plt.subplots(2, 3, figsize=(12, 6.5), layout="constrained", sharex="col")
+    titles = {"u_shape": "U on its legs", "l_shape": "L on the ends of its limbs", "ring": "ring linked with a ring"}
+    for column, (case, title) in enumerate(titles.items()):
+        rows = results["press"][case]
+        x = [row["x"] for row in rows]
+        for mode, colour in zip(MODES, ("C0", "C3"), strict=True):
+            force = np.array([row[mode][0] for row in rows])
+            moment = np.array([row[mode][1] for row in rows])
+            across = 1 if case != "ring" else 0
+            axes[0, column].plot(x, np.linalg.norm(force, axis=1), colour, label=mode)
+            axes[1, column].plot(x, moment[:, across], colour)
+        axes[0, column].set_title(title)
+        axes[1, column].set_xlabel("tilt [degrees]" if case != "ring" else "angle between the planes [degrees]")
+        for ax in axes[:, column]:
+            ax.grid(alpha=0.3)
+    axes[0, 0].set_ylabel("force over c E* size²")
+    axes[1, 0].set_ylabel("moment over c E* size³")
+    axes[0, 0].legend()
+    figure.savefig(FOLDER / "press.png", dpi=130)
+    plt.close(figure)
+
+
+def plot_heaps(results):
+    columns = (("height", "mean height [mm]", 1e3), ("spread", "spread [mm]", 1e3), ("coordination", "coordination number", 1))
+    figure, axes = plt.subplots(1, 3, figsize=(11, 3.6), layout="constrained")
+    for ax, (column, label, unit) in zip(axes, columns, strict=True):
+        for k, shape in enumerate(SHAPES):
+            for m, mode in enumerate(MODES):
+                values = [unit * row[column] for row in results["heaps"] if (row["shape"], row["mode"]) == (shape, mode)]
+                ax.plot([k + 0.25 * m - 0.125] * len(values), values, f"C{3 * m}.", ms=4, label=mode if k == 0 else None)
+                ax.errorbar(k + 0.25 * m - 0.06, np.mean(values), np.std(values, ddof=1), fmt=f"C{3 * m}o", ms=4, capsize=3)
+        ax.set_xticks(range(len(SHAPES)), ["L", "U", "ring"])
+        ax.set(ylabel=label)
+        ax.grid(alpha=0.3)
+    axes[0].legend()
+    figure.savefig(FOLDER / "heaps.png", dpi=130)
+    plt.close(figure)
+
+
+def heaps_table(results):
+    lines = ["| | patches | mean height [mm] | spread [mm] | coordination number | deepest [mm] | kinetic energy left [J] | "
+             "error of the balance | time |", "|" + "---|" * 9]
+    for shape in SHAPES:
+        medians = {}
+        for mode in MODES:
+            rows = [row for row in results["heaps"] if (row["shape"], row["mode"]) == (shape, mode)]
+            medians[mode] = np.median([row["seconds"] for row in rows])
+
+            def spread(name, unit=1.0, digits=1, rows=rows):
+                values = [unit * row[name] for row in rows]
+                return f"{np.mean(values):.{digits}f} ± {np.std(values, ddof=1) / math.sqrt(len(values)):.{digits}f}"
+
+            worst = {name: max(row[name] for row in rows) for name in ("deepest", "moving", "balance")}
+            lines.append(f"| {shape} | {mode} | {spread('height', 1e3)} | {spread('spread', 1e3)} | {spread('coordination', 1, 2)} | "
+                         f"{1e3 * worst['deepest']:.1f} | {worst['moving']:.0e} | {worst['balance']:.0e} | "
+                         f"{medians[mode] / medians['merged']:.2f} |")
+    return "\n".join(lines)
+
+
+def make_page(results):
+    plot_press(results)
+    plot_heaps(results)
+    page = (FOLDER / "page.md").read_text()
+    for name, text in {"heaps": heaps_table(results), "bodies": str(BODIES), "seeds": str(SEEDS)}.items():
+        page = page.replace("{{" + name + "}}", text)
+    (FOLDER / "README.md").write_text(page)
+
+
+if __name__ == "__main__":
+    if sys.argv[1:] not in ([], ["--keep"]):
+        raise SystemExit(__doc__)
+    if not sys.argv[1:]:
+        RESULTS.write_text(json.dumps({"press": press(), "heaps": heaps()}) + "\n")
+    make_page(json.loads(RESULTS.read_text()))

@@ -14,7 +14,7 @@ extern "C"
     typedef struct scree_scene_file
     {
         scree_scene scene;
-        char *text;   ///< YAML with every default and override filled in
+        char *text;   ///< YAML with every default and override filled in, mesh files by their whole paths
         char *folder; ///< folder of the file
         void *owned;  ///< internal
     } scree_scene_file;

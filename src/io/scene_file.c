@@ -1,10 +1,11 @@
 /// \file scene_file.c
 /// Scenes from YAML. libyaml finds values and lines, the values of the command line are put in, the tree is checked
-/// against the tables of keys and the rules between them, and what has passed is written out with every default: that
-/// text is what libcyaml fills the structures from, so the two cannot disagree.
-#define _POSIX_C_SOURCE 200809L
+/// against the tables of keys and the rules between them, and what has passed is written out with every default: from
+/// that text libcyaml fills the structures, and it is kept, with mesh files by their whole paths.
+#define _XOPEN_SOURCE 700 /* realpath */
 #include "scree/scene.h"
 
+#include "io/run_folder.h"
 #include "io/scene_reader.h"
 
 #include <errno.h>
@@ -30,14 +31,38 @@ static char *folder_of(const char *path)
     return folder;
 }
 
+/// Mesh files by their whole paths, so that the text is the same scene in any folder. A file that is not there is left
+/// as it is: the maker of shapes tells.
+static scree_status resolve_mesh_files(const scree_scene_file *file, scree_scene_reader *reader)
+{
+    const scree_yaml_node *shapes = scree_yaml_find(reader->root, "shapes");
+    for (int64_t k = 0; shapes != NULL && k < shapes->num_items; ++k)
+    {
+        scree_yaml_node *mesh = scree_yaml_find(shapes->items[k], "file");
+        if (mesh == NULL || mesh->text[0] == '\0' || mesh->text[0] == '/') continue;
+        char *path = scree_path_join(file->folder, mesh->text);
+        char *whole = path == NULL ? NULL : realpath(path, NULL);
+        const scree_yaml_node *copy = whole == NULL ? NULL : scree_yaml_add(&reader->tree, SCREE_YAML_SCALAR, whole);
+        const bool is_complete = path != NULL && (whole == NULL || copy != NULL);
+        free(path);
+        free(whole);
+        if (!is_complete) return SCREE_OUT_OF_MEMORY;
+        if (copy == NULL) continue;
+        mesh->text = copy->text;
+        mesh->is_quoted = true;
+    }
+    return SCREE_OK;
+}
+
 /// Structures and text from a tree without faults.
-static scree_status load(scree_scene_file *file, const scree_scene_reader *reader)
+static scree_status load(scree_scene_file *file, scree_scene_reader *reader)
 {
     char *numbers = NULL;
     size_t length = 0, num_numbers = 0;
     scree_scene *scene = NULL;
-    scree_status status = scree_yaml_write(reader->root, false, &file->text, &length);
-    if (status == SCREE_OK) status = scree_yaml_write(reader->root, true, &numbers, &num_numbers);
+    scree_status status = scree_yaml_write(reader->root, true, &numbers, &num_numbers);
+    if (status == SCREE_OK) status = resolve_mesh_files(file, reader);
+    if (status == SCREE_OK) status = scree_yaml_write(reader->root, false, &file->text, &length);
     if (status == SCREE_OK)
     {
         const cyaml_err_t fault = cyaml_load_data((const uint8_t *)numbers, num_numbers, &cyaml_settings,

@@ -8,6 +8,7 @@ import pty
 import random
 import re
 import shlex
+import shutil
 import signal
 import subprocess
 import time
@@ -21,6 +22,7 @@ from vtk.util.numpy_support import vtk_to_numpy
 
 PROGRAM = os.environ.get("SCREE_PROGRAM", "build/release/scree")
 PROGRAM = str(Path(PROGRAM).resolve())
+MODELS = Path(__file__).parents[2] / "models"
 
 SCENE = """
 name: few rocks
@@ -242,6 +244,18 @@ def test_vtk_reads_walls_and_contacts(whole):
 def test_the_scene_as_used_gives_the_same_run(whole, tmp_path):
     run(whole / "scene.yaml", "-o", tmp_path / "again")
     assert_same_run(whole, tmp_path / "again")
+
+
+def test_the_scene_as_used_finds_its_mesh_from_any_folder(tmp_path):
+    home = tmp_path / "home"
+    home.mkdir()
+    shutil.copy(MODELS / "l_shape.obj", home / "a stone.obj")
+    text = re.sub(r"\{name: rock, source: [^}]*\}", '{name: rock, source: file, file: "a stone.obj"}', SCENE)
+    assert "a stone.obj" in text
+    (home / "scene.yaml").write_text(text)
+    run("home/scene.yaml", "-o", "away/run", "--set", "time.end=1e-3", cwd=tmp_path)
+    run(tmp_path / "away/run/scene.yaml", "-o", tmp_path / "again", cwd="/")
+    assert_same_run(tmp_path / "away/run", tmp_path / "again")
 
 
 # ---- stopping and going on

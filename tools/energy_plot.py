@@ -5,12 +5,9 @@ on a logarithmic scale. Below: change of the balance over the largest energy tur
 summary.json.
 """
 
-import argparse
-
-import matplotlib
 import numpy as np
 
-from run_folder import Run
+from run_folder import draw_from_command_line
 
 BUDGET = (  # name, column, colour, style
     ("potential", "potential", "#1f4e79", "-"),
@@ -106,17 +103,5 @@ def draw_energies(run, output):
     plt.close(figure)
 
 
-def main():
-    matplotlib.use("Agg")
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("run", help="folder of the run")
-    parser.add_argument("-o", "--output", help="the picture; default: RUN/pictures/energy.png")
-    arguments = parser.parse_args()
-    run = Run(arguments.run)
-    path = arguments.output or run.pictures() / "energy.png"
-    draw_energies(run, path)
-    print(path)
-
-
 if __name__ == "__main__":
-    main()
+    draw_from_command_line(draw_energies, "energy.png", __doc__)

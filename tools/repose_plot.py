@@ -1,12 +1,10 @@
 """Height map of the pile with the fitted sigmoid h(x) = c/(1 + exp(a (x - b))) and its steepest slope, at x = b."""
 
-import argparse
 import dataclasses
 
-import matplotlib
 import numpy as np
 
-from run_folder import Run
+from run_folder import draw_from_command_line
 
 MM = 1e3
 
@@ -110,17 +108,5 @@ def draw_height_map(run, output):
     plt.close(figure)
 
 
-def main():
-    matplotlib.use("Agg")
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("run", help="folder of the run")
-    parser.add_argument("-o", "--output", help="the picture; default: RUN/pictures/height_map.png")
-    arguments = parser.parse_args()
-    run = Run(arguments.run)
-    path = arguments.output or run.pictures() / "height_map.png"
-    draw_height_map(run, path)
-    print(path)
-
-
 if __name__ == "__main__":
-    main()
+    draw_from_command_line(draw_height_map, "height_map.png", __doc__)

@@ -1,9 +1,11 @@
 """Reading a run folder: summary, series, frames. Used by the scripts beside this file."""
+import argparse
 import csv
 import json
 from pathlib import Path
 
 import h5py
+import matplotlib
 import numpy as np
 
 
@@ -48,6 +50,19 @@ class Run:
         """Polyhedra and spheres together as triangles; None if the run has no frames."""
         files = [surfaces for surfaces in (self.surfaces("frames"), self.surfaces("spheres")) if surfaces is not None]
         return Particles(files) if files else None
+
+
+def draw_from_command_line(draw, name, text):
+    """A program that draws one picture: draw(run, path); `name` in the run's pictures unless -o says otherwise."""
+    matplotlib.use("Agg")
+    parser = argparse.ArgumentParser(description=text.split("\n")[0])
+    parser.add_argument("run", help="folder of the run")
+    parser.add_argument("-o", "--output", help=f"the picture; default: RUN/pictures/{name}")
+    arguments = parser.parse_args()
+    run = Run(arguments.run)
+    path = arguments.output or run.pictures() / name
+    draw(run, path)
+    print(path)
 
 
 class Surfaces:

@@ -15,17 +15,20 @@ typedef struct scene_run
     scree_report report;
 } scene_run;
 
-/// The messages are printed if the scene is refused.
-static inline void scene_run_start(scene_run *run, const char *text)
+/// With overrides "a.b=value". The messages are printed if the scene is refused.
+static inline void scene_run_start_with(scene_run *run, const char *text, const char *const *overrides,
+                                        int num_overrides)
 {
     memset(run, 0, sizeof *run);
-    scree_status status = scree_scene_parse(&run->file, text, "test.yaml", NULL, 0, &run->report);
+    scree_status status = scree_scene_parse(&run->file, text, "test.yaml", overrides, num_overrides, &run->report);
     if (status == SCREE_OK)
         status = scree_simulation_create(&run->simulation, &run->file.scene, run->file.folder, &run->report);
     if (status != SCREE_OK)
         for (int k = 0; k < run->report.num_messages; ++k) printf("%s\n", run->report.messages[k]);
     SCREE_CHECK_INT(status, SCREE_OK);
 }
+
+static inline void scene_run_start(scene_run *run, const char *text) { scene_run_start_with(run, text, NULL, 0); }
 
 /// Steps until `time` [s] is reached.
 static inline void scene_run_until(scene_run *run, double time)

@@ -49,6 +49,40 @@ extern "C"
     scree_status scree_simulation_create(scree_simulation **simulation, const scree_scene *scene, const char *folder,
                                          scree_report *report);
     void scree_simulation_destroy(scree_simulation *simulation);
+
+    /// Stages of a step, in their order.
+#define SCREE_STAGE_LIST(X)             \
+    X(SCREE_STAGE_PREDICT, "predict")   \
+    X(SCREE_STAGE_TRAVEL, "travel")     \
+    X(SCREE_STAGE_SEARCH, "search")     \
+    X(SCREE_STAGE_CONTACTS, "contacts") \
+    X(SCREE_STAGE_HISTORY, "history")   \
+    X(SCREE_STAGE_FORCES, "forces")     \
+    X(SCREE_STAGE_GATHER, "gather")     \
+    X(SCREE_STAGE_CORRECT, "correct")   \
+    X(SCREE_STAGE_WORK, "work")         \
+    X(SCREE_STAGE_OTHER, "other")
+
+    typedef enum scree_stage
+    {
+#define SCREE_STAGE_ENUMERATOR(name, text) name,
+        SCREE_STAGE_LIST(SCREE_STAGE_ENUMERATOR)
+#undef SCREE_STAGE_ENUMERATOR
+            SCREE_NUM_STAGES
+    } scree_stage;
+
+    const char *scree_stage_name(scree_stage stage);
+
+    /// Time of the stages, summed up over steps.
+    typedef struct scree_stage_times
+    {
+        double wall[SCREE_NUM_STAGES]; ///< [s] elapsed
+        double core[SCREE_NUM_STAGES]; ///< [s] of the processors, all threads of the process
+    } scree_stage_times;
+
+    /// From now on every step adds its times to *times, which must outlive that; NULL stops it.
+    void scree_simulation_time_stages(scree_simulation *simulation, scree_stage_times *times);
+
     /// One step. SCREE_OUT_OF_MEMORY and SCREE_UNSTABLE lose the simulation.
     scree_status scree_simulation_step(scree_simulation *simulation, scree_report *report);
 

@@ -216,9 +216,16 @@ extern "C"
 
     typedef struct scree_solver_def
     {
-        double skin;           ///< [1] share of the mean bounding radius added to the boxes; default 0.1
+        double skin;           ///< [1] share of the mean bounding radius added to the boxes; auto: of least cost
         char *overlap_scheme;  ///< "filtered" (default) or "hierarchy"
         bool separate_patches; ///< default false: one contact for all pieces of an overlap
+
+        // avoided work, all by default; the results are the same without
+        bool reuse_pairs;         ///< candidate pairs serve until a body may have left its skin
+        bool compare_spheres;     ///< candidates are those whose bounding spheres overlap, not only their boxes
+        bool find_separation;     ///< meshes are asked for a plane between them before their overlap
+        bool remember_separation; ///< that plane is tried first the next time
+        bool bound_separation;    ///< nothing is asked until the bodies may have travelled through the gap
     } scree_solver_def;
 
     typedef struct scree_scene

@@ -196,12 +196,15 @@ static scree_status sort_pairs(struct scree_narrow_phase_buffers *b, const scree
 }
 
 /// Is the pair known to be apart, or found to be so now? The answer is proven, never a guess.
-static bool is_apart(const scree_bodies *bodies, scree_candidate_pair pair, pair_memory *memory)
+static bool is_apart(const scree_narrow_phase *narrow_phase, const scree_bodies *bodies, scree_candidate_pair pair,
+                     pair_memory *memory)
 {
+    if (!narrow_phase->finds_separation) return false;
     const scree_real travelled = bodies->travel[pair.i] + bodies->travel[pair.j];
-    if (travelled < memory->apart_until) return true;
+    if (narrow_phase->bounds_separation && travelled < memory->apart_until) return true;
+    if (!narrow_phase->remembers_separation) memory->direction = scree_vec3_make(0, 0, 0);
     // contacts mostly last; the search would be in vain
-    if (memory->was_touching) return false;
+    else if (memory->was_touching) return false;
     const scree_real gap =
         scree_separation_search(bodies->shapes + bodies->shape[pair.i], bodies->pose + pair.i,
                                 bodies->shapes + bodies->shape[pair.j], bodies->pose + pair.j, &memory->direction);
@@ -220,7 +223,7 @@ static scree_status find_overlap(scree_narrow_phase *narrow_phase, const scree_b
     const scree_candidate_pair pair = pairs[p];
     scree_overlap_result *results = b->results + m * b->max_results;
     b->num_results[m] = b->num_contacts[p] = 0;
-    if (is_apart(bodies, pair, b->memory + m)) return SCREE_OK;
+    if (is_apart(narrow_phase, bodies, pair, b->memory + m)) return SCREE_OK;
     const scree_shape_view *shape_i = bodies->shapes + bodies->shape[pair.i];
     const scree_shape_view *shape_j = bodies->shapes + bodies->shape[pair.j];
     int32_t num;

@@ -4,7 +4,8 @@
 /// per entry of the table, and a batch that is empty costs no memory.
 ///
 /// A pair of meshes that was found apart by a gap is skipped until its bodies may have travelled that far; one that did
-/// not touch is asked along its last separating direction first. Neither changes a bit of the result.
+/// not touch is asked along its last separating direction first. Both can be switched off; neither changes a bit of the
+/// result.
 #ifndef SCREE_NARROW_PHASE_H
 #define SCREE_NARROW_PHASE_H
 
@@ -35,6 +36,9 @@ typedef struct scree_narrow_phase_counts
 typedef struct scree_narrow_phase
 {
     scree_overlap_options options;
+    bool finds_separation;                      ///< false: every candidate pair of meshes goes to the overlap
+    bool remembers_separation;                  ///< the search for a direction starts with that of the last time
+    bool bounds_separation;                     ///< a pair is skipped until it may have travelled through its gap
     scree_narrow_phase_counts counts;           ///< of the last search
     struct scree_narrow_phase_buffers *buffers; ///< internal
 } scree_narrow_phase;

@@ -52,6 +52,7 @@ scree_status scree_update_contacts(scree_simulation *simulation)
     bodies.num_bodies = simulation->particles.num_particles + simulation->num_walls;
     scree_status status = scree_narrow_phase_find(&simulation->narrow_phase, &bodies, broad_phase->pairs,
                                                   broad_phase->num_pairs, &simulation->contacts);
+    scree_stage_end(&simulation->clock, SCREE_STAGE_CONTACTS);
     const int64_t num = simulation->contacts.num_contacts;
     if (status == SCREE_OK) status = reserve(&b->old_of_contact, &b->max_contacts, num, sizeof *b->old_of_contact);
     if (status == SCREE_OK) status = reserve(&b->is_continued, &b->max_old, old.num_contacts, sizeof *b->is_continued);
@@ -80,6 +81,7 @@ scree_status scree_update_contacts(scree_simulation *simulation)
     counters->num_fallbacks += counts->num_fallbacks;
     counters->worst_residual = fmax(counters->worst_residual, (double)counts->worst_residual);
     counters->largest_indentation = fmax(counters->largest_indentation, (double)counts->largest_indentation);
+    scree_stage_end(&simulation->clock, SCREE_STAGE_HISTORY);
     return SCREE_OK;
 }
 
@@ -107,6 +109,7 @@ scree_status scree_update_forces(scree_simulation *simulation)
     force.num_materials = simulation->num_materials;
     force.time_step = (scree_real)simulation->time_step;
     scree_contact_force_launch(force, simulation->contacts.num_contacts);
+    scree_stage_end(&simulation->clock, SCREE_STAGE_FORCES);
 
     const double *gravity = simulation->scene->gravity;
     scree_gather_args gather;
@@ -119,6 +122,7 @@ scree_status scree_update_forces(scree_simulation *simulation)
     gather.force = simulation->particles.force;
     gather.torque = simulation->particles.torque;
     scree_gather_launch(gather, simulation->particles.num_particles);
+    scree_stage_end(&simulation->clock, SCREE_STAGE_GATHER);
     return SCREE_OK;
 }
 

@@ -2,6 +2,7 @@
 /// A scene to a simulation at time 0. The scene's own faults (ranges, names) have been refused by its reader; what only
 /// shows with meshes and particles in place is refused here.
 #include "dynamics/populate.h"
+#include "dynamics/skin.h"
 #include "dynamics/start_check.h"
 #include "dynamics/step_buffers.h"
 #include "dynamics/time_step.h"
@@ -208,16 +209,6 @@ static scree_status allocate(scree_simulation *s)
     return is_complete ? SCREE_OK : SCREE_OUT_OF_MEMORY;
 }
 
-/// Skin as a share of the mean bounding radius.
-static scree_real choose_skin(const scree_simulation *s)
-{
-    const scree_particles *p = &s->particles;
-    double sum = 0;
-    for (int64_t i = 0; i < p->num_particles; ++i)
-        sum += s->particle_shapes[p->shape[i]].properties.bounding_radius * (double)p->scale[i];
-    return (scree_real)(p->num_particles > 0 ? s->scene->solver.skin * sum / (double)p->num_particles : 0);
-}
-
 /// True if every contact acts in a point: all particles are spheres, and no law has a moment of its own for them.
 static bool are_contacts_points(const scree_simulation *s)
 {
@@ -232,13 +223,16 @@ static bool are_contacts_points(const scree_simulation *s)
 /// Contacts and forces of time 0.
 static scree_status start(scree_simulation *s, scree_report *report)
 {
-    s->buffers->skin = choose_skin(s);
+    s->buffers->skin = scree_skin_at_start(s);
     s->contacts.acts_in_points = s->old_contacts.acts_in_points = are_contacts_points(s);
     s->counters.smallest_critical_step = INFINITY;
     s->narrow_phase.options.scheme =
         strcmp(s->scene->solver.overlap_scheme, "hierarchy") == 0 ? SCREE_OVERLAP_HIERARCHY : SCREE_OVERLAP_FILTERED;
     s->narrow_phase.options.separate_patches = s->scene->solver.separate_patches;
     s->narrow_phase.options.use_convex_path = true;
+    s->narrow_phase.finds_separation = s->scene->solver.find_separation;
+    s->narrow_phase.remembers_separation = s->scene->solver.remember_separation;
+    s->narrow_phase.bounds_separation = s->scene->solver.bound_separation;
     scree_place_walls(s, 0);
     scree_place_particles(s);
     scree_status status = scree_update_neighbours(s);

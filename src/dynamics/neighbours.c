@@ -2,6 +2,7 @@
 /// When to search candidate pairs, and the search. Every box holds its body as long as no point of it has moved by more
 /// than the skin; so a pair can only touch while it is among the pairs of the last search.
 #include "dynamics/dynamics.h"
+#include "dynamics/skin.h"
 #include "dynamics/step_buffers.h"
 
 #include <string.h>
@@ -22,12 +23,13 @@ static scree_real largest_displacement(const scree_simulation *s, int64_t begin,
 
 static bool is_search_due(const scree_simulation *s)
 {
-    const scree_step_buffers *b = s->buffers;
-    if (!b->has_pairs) return true;
+    scree_step_buffers *b = s->buffers;
+    if (!b->has_pairs || !s->scene->solver.reuse_pairs) return true;
     for (int32_t w = 0; w < s->num_walls; ++w)
         if (s->walls[w].is_present != b->broad_phase_walls[w].is_present) return true;
     const int64_t num = s->particles.num_particles;
-    return !(largest_displacement(s, 0, num) + largest_displacement(s, num, num + s->num_walls) <= b->skin);
+    b->moved = largest_displacement(s, 0, num) + largest_displacement(s, num, num + s->num_walls);
+    return !(b->moved <= b->skin);
 }
 
 /// Adds the way of this step to the travels of all bodies.
@@ -47,7 +49,10 @@ scree_status scree_update_neighbours(scree_simulation *simulation)
 {
     scree_step_buffers *b = simulation->buffers;
     if (b->has_travel) add_travel(simulation);
-    if (!is_search_due(simulation)) return SCREE_OK;
+    const bool is_due = is_search_due(simulation);
+    scree_stage_end(&simulation->clock, SCREE_STAGE_TRAVEL);
+    if (!is_due) return SCREE_OK;
+    scree_skin_adapt(simulation);
     const int64_t num_particles = simulation->particles.num_particles;
 
     scree_boxes_args boxes;
@@ -71,7 +76,7 @@ scree_status scree_update_neighbours(scree_simulation *simulation)
     input.boxes = b->boxes;
     input.centres = b->centres;
     input.radii = b->radii;
-    input.compares_spheres = true;
+    input.compares_spheres = simulation->scene->solver.compare_spheres;
     input.walls = b->broad_phase_walls;
     input.num_particles = num_particles;
     input.num_walls = simulation->num_walls;
@@ -82,8 +87,10 @@ scree_status scree_update_neighbours(scree_simulation *simulation)
     memset(b->travel, 0, (size_t)(num_particles + simulation->num_walls) * sizeof *b->travel);
     memcpy(b->searched_pose, b->pose, (size_t)(num_particles + simulation->num_walls) * sizeof *b->pose);
     b->has_pairs = true;
+    b->searched_step = simulation->step;
     b->is_old_list_of_same_pairs = false;
     ++simulation->counters.num_rebuilds;
     simulation->counters.num_pairs = simulation->broad_phase.num_pairs;
+    scree_stage_end(&simulation->clock, SCREE_STAGE_SEARCH);
     return SCREE_OK;
 }

@@ -58,19 +58,25 @@ static scree_status check_contacts(const scree_simulation *s, scree_report *repo
 scree_status scree_simulation_step(scree_simulation *simulation, scree_report *report)
 {
     ++simulation->step;
+    scree_stage_begin(&simulation->clock);
     predict(simulation);
+    scree_stage_end(&simulation->clock, SCREE_STAGE_PREDICT);
     scree_status status = scree_update_neighbours(simulation);
     if (status == SCREE_OK) status = scree_update_contacts(simulation);
     if (status == SCREE_OK) status = check_contacts(simulation, report);
+    scree_stage_end(&simulation->clock, SCREE_STAGE_OTHER);
     if (status == SCREE_OK) status = scree_update_forces(simulation);
     if (status == SCREE_OK)
     {
         correct(simulation);
+        scree_stage_end(&simulation->clock, SCREE_STAGE_CORRECT);
         status = scree_account_work(simulation);
+        scree_stage_end(&simulation->clock, SCREE_STAGE_WORK);
         if (status == SCREE_OK) status = scree_account_wall_loads(simulation);
         if (status == SCREE_OK) status = scree_update_averages(simulation);
     }
     const int64_t unstable = status == SCREE_OK ? find_unstable(&simulation->particles) : -1;
+    scree_stage_end(&simulation->clock, SCREE_STAGE_OTHER);
     if (unstable >= 0)
     {
         scree_report_add(report,

@@ -8,6 +8,7 @@
 #include "contact/narrow_phase.h"
 #include "dynamics/averages.h"
 #include "dynamics/particles.h"
+#include "dynamics/stage_clock.h"
 #include "dynamics/wall_loads.h"
 #include "dynamics/walls.h"
 #include "forces/force_model.h"
@@ -37,6 +38,8 @@ struct scree_simulation
     scree_counters counters;
     scree_averages averages;     ///< fields, collisions, works; nothing if the scene measures none
     scree_wall_loads wall_loads; ///< torques, forces and work of moving walls
+
+    scree_stage_clock clock; ///< off unless somebody asks
 
     // scratch
     scree_contact_list old_contacts; ///< of the step before, for the history

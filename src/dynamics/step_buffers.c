@@ -12,6 +12,12 @@ static double equal_volume_radius(const scree_simulation *simulation, size_t i)
     return cbrt(3 * shape->properties.volume / (4 * M_PI)) * (double)particles->scale[i];
 }
 
+static double particle_bounding_radius(const scree_simulation *simulation, size_t i)
+{
+    const scree_particles *particles = &simulation->particles;
+    return simulation->particle_shapes[particles->shape[i]].properties.bounding_radius * (double)particles->scale[i];
+}
+
 scree_status scree_step_buffers_create(scree_simulation *simulation)
 {
     const size_t num_particles = (size_t)simulation->particles.num_particles;
@@ -46,6 +52,7 @@ scree_status scree_step_buffers_create(scree_simulation *simulation)
         b->inverse_radius[i] = (scree_real)(1 / equal_volume_radius(simulation, i));
         b->shape[i] = simulation->particles.shape[i];
         b->material[i] = simulation->particles.material[i];
+        b->mean_radius += particle_bounding_radius(simulation, i) / (double)num_particles;
         b->has_travel |= simulation->shape_views[b->shape[i]].kind == SCREE_KIND_MESH;
     }
     for (size_t w = 0; w < num_walls; ++w)

@@ -26,7 +26,10 @@ typedef struct scree_step_buffers
     scree_vec3 *centres;       ///< (num_particles)
     scree_real *radii;         ///< (num_particles)
     scree_broad_phase_wall *broad_phase_walls; ///< (num_walls)
-    scree_real skin;                           ///< [m]
+    scree_real skin;                           ///< [m] of the last search
+    double mean_radius;                        ///< [m] of the particles' bounding spheres
+    scree_real moved;                          ///< [m] way of the fastest bodies between it and the present step
+    int64_t searched_step;                     ///< step of the last search
     bool has_pairs;                            ///< false: search before the next step
 
     // moving walls

@@ -483,15 +483,22 @@ static const scree_scene_section wall_section = {
 static const char *const overlap_schemes[] = {"filtered", "hierarchy"};
 static const cyaml_schema_field_t solver_fields[] = {NUMBER(scree_solver_def, skin),
                                                      TEXT(scree_solver_def, overlap_scheme),
-                                                     TRUTH(scree_solver_def, separate_patches), CYAML_FIELD_END};
+                                                     TRUTH(scree_solver_def, separate_patches),
+                                                     TRUTH(scree_solver_def, reuse_pairs),
+                                                     TRUTH(scree_solver_def, compare_spheres),
+                                                     TRUTH(scree_solver_def, find_separation),
+                                                     TRUTH(scree_solver_def, remember_separation),
+                                                     TRUTH(scree_solver_def, bound_separation),
+                                                     CYAML_FIELD_END};
 static const scree_scene_key solver_keys[] = {
     {.name = "skin",
      .unit = "1",
-     .default_text = "0.1",
+     .default_text = "auto",
+     .special = "auto",
      .min = 0,
      .max = 10,
      .meaning = "room around the boxes of the neighbour search over the mean bounding radius: more pairs, rarer "
-                "searches; results stay the same"},
+                "searches; auto: what should cost least, chosen anew at every search; results stay the same"},
     {.name = "overlap_scheme",
      .default_text = "filtered",
      .rule = SCREE_TEXT_WORD,
@@ -502,6 +509,23 @@ static const scree_scene_key solver_keys[] = {
      .default_text = "false",
      .meaning = "whether the connected pieces of the overlap of two polyhedra are contacts of their own, each with its "
                 "force and history; false: one contact for all of them, as Bilock (2020)"},
+    {.name = "reuse_pairs",
+     .default_text = "true",
+     .meaning =
+         "whether candidate pairs serve until a body may have left its skin; this and what follows saves work and "
+         "changes no result"},
+    {.name = "compare_spheres",
+     .default_text = "true",
+     .meaning = "whether particles are candidates only if their bounding spheres overlap, and not only their boxes"},
+    {.name = "find_separation",
+     .default_text = "true",
+     .meaning = "whether polyhedra are asked for a plane between them before their overlap is computed"},
+    {.name = "remember_separation",
+     .default_text = "true",
+     .meaning = "whether that plane is tried first in the next step, and pairs that touched are not asked"},
+    {.name = "bound_separation",
+     .default_text = "true",
+     .meaning = "whether a pair is left alone until its bodies may have travelled through the gap between them"},
 };
 static const scree_scene_section solver_section = {"solver", "How contacts are found.", solver_fields, solver_keys,
                                                    COUNT(solver_keys)};

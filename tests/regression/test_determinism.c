@@ -1,6 +1,5 @@
 // Same bits: for 1, 2 and 7 threads, for a search at every step, and the golden hash of a scene, which other compilers
 // must reproduce. Printed as "hash NAME VALUE" for comparison between builds.
-#include "dynamics/step_buffers.h"
 #include "scene_run.h"
 
 #include <omp.h>
@@ -49,21 +48,20 @@ static const char spheres_text[] =
     "  - {name: step, shape: floor, material: stone, position: [0.225, 0, -0.002]}\n"
     "  - {name: side, shape: wall, material: stone, position: [0.16, 0, 0.1], orientation: [0.97, 0.1, 0.2, 0.05]}\n";
 
-/// Hash after the scene's end with so many threads; with `search_always` candidate pairs are found anew in every step.
-static uint64_t run_hash(const char *scene_text, int num_threads, bool search_always)
+/// Hash after the scene's end with so many threads and one or two keys of the scene replaced, or NULL.
+static uint64_t run_hash(const char *scene_text, int num_threads, const char *override, const char *other)
 {
     omp_set_num_threads(num_threads);
     scene_run run;
-    scene_run_start(&run, scene_text);
+    const char *overrides[] = {override, other};
+    scene_run_start_with(&run, scene_text, overrides, (override != NULL) + (other != NULL));
     uint64_t hash = 0;
     if (run.simulation != NULL)
     {
         for (int64_t k = scree_simulation_num_steps(run.simulation); k > 0; --k)
-        {
-            if (search_always) run.simulation->buffers->has_pairs = false;
             SCREE_CHECK_INT(scree_simulation_step(run.simulation, &run.report), SCREE_OK);
-        }
-        printf("%d threads: %d contacts at the end\n", num_threads, (int)run.simulation->contacts.num_contacts);
+        printf("%d threads, %s: %d contacts at the end, %d searches\n", num_threads, override != NULL ? override : "",
+               (int)run.simulation->contacts.num_contacts, (int)run.simulation->counters.num_rebuilds);
         SCREE_CHECK(run.simulation->contacts.num_contacts > 30);
         hash = scree_simulation_hash(run.simulation);
     }
@@ -73,11 +71,33 @@ static uint64_t run_hash(const char *scene_text, int num_threads, bool search_al
 
 static void check_same_bits(const char *scene_text, const char *name)
 {
-    const uint64_t one = run_hash(scene_text, 1, false);
+    const uint64_t one = run_hash(scene_text, 1, NULL, NULL);
     printf("hash %s %016llx\n", name, (unsigned long long)one);
-    SCREE_CHECK(run_hash(scene_text, 2, false) == one);
-    SCREE_CHECK(run_hash(scene_text, 7, false) == one);
-    SCREE_CHECK(run_hash(scene_text, 2, true) == one);
+    SCREE_CHECK(run_hash(scene_text, 2, NULL, NULL) == one);
+    SCREE_CHECK(run_hash(scene_text, 7, NULL, NULL) == one);
+    SCREE_CHECK(run_hash(scene_text, 2, "solver.reuse_pairs=false", NULL) == one);
+}
+
+/// Each piece of work that is avoided, done after all; and skins of all widths.
+static void check_savings(const char *scene_text, const char *end)
+{
+    static const char *const keys[] = {"solver.compare_spheres=false",
+                                       "solver.find_separation=false",
+                                       "solver.remember_separation=false",
+                                       "solver.bound_separation=false",
+                                       "solver.skin=0.002",
+                                       "solver.skin=0.3",
+                                       "solver.skin=2"};
+    const uint64_t all = run_hash(scene_text, 1, end, NULL);
+    for (size_t k = 0; k < sizeof keys / sizeof *keys; ++k)
+        for (int num_threads = 1; num_threads <= 2; ++num_threads)
+            SCREE_CHECK(run_hash(scene_text, num_threads, keys[k], end) == all);
+}
+
+static void test_avoided_work_changes_no_bit(void)
+{
+    check_savings(polyhedra_text, "time.end=0.08");
+    check_savings(spheres_text, "time.end=0.03");
 }
 
 static void test_same_bits_however_it_is_run(void) { check_same_bits(polyhedra_text, "rocks_and_schoenhardt"); }
@@ -88,5 +108,6 @@ int main(void)
 {
     SCREE_RUN(test_same_bits_however_it_is_run);
     SCREE_RUN(test_same_bits_of_spheres);
+    SCREE_RUN(test_avoided_work_changes_no_bit);
     return SCREE_TEST_END();
 }

@@ -57,7 +57,7 @@ static const char full_text[] =
     "     motion: {kind: translate, velocity: [1, 0, -1], start: 0.5, end: 1.5}}\n"
     "  - {name: drum, shape: twist, material: plate,\n"
     "     motion: {kind: rotate, axis: [0, 2, 0], centre: [1, 2, 3], angular_velocity: -8}}\n"
-    "solver: {skin: 0.3, overlap_scheme: hierarchy}\n"
+    "solver: {skin: 0.3, overlap_scheme: hierarchy, find_separation: false}\n"
     "output: {series: 0.01, frames: 0.5, checkpoint: 0}\n"
     "repose: {measure: true, from: -0.5, to: 0.25, base: 0.125, bins: 33}\n";
 
@@ -162,7 +162,7 @@ static void check_full_bodies(const scree_scene *s)
     SCREE_CHECK(drum->motion.kind == SCREE_MOTION_ROTATE && equal3(drum->motion.axis, 0, 2, 0));
     SCREE_CHECK(equal3(drum->motion.centre, 1, 2, 3) && drum->motion.angular_velocity == -8);
     SCREE_CHECK(drum->motion.start == 0 && isinf(drum->motion.end));
-    SCREE_CHECK(s->solver.skin == 0.3);
+    SCREE_CHECK(s->solver.skin == 0.3 && !s->solver.find_separation && s->solver.reuse_pairs);
     SCREE_CHECK(strcmp(s->solver.overlap_scheme, "hierarchy") == 0);
     SCREE_CHECK(s->output.series == 0.01 && s->output.frames == 0.5 && s->output.checkpoint == 0);
     SCREE_CHECK(s->repose.measure && s->repose.from == -0.5 && s->repose.to == 0.25);
@@ -204,7 +204,9 @@ static void test_defaults(void)
     SCREE_CHECK(s->particles[0].size.distribution == SCREE_SIZE_AS_SHAPE && s->particles[0].spacing == 1.05);
     SCREE_CHECK(isnan(s->particles[0].bodies[0].size) && s->particles[0].bodies[0].orientation[0] == 1);
     SCREE_CHECK(s->walls[0].orientation[0] == 1 && isinf(s->walls[0].motion.end) && isinf(s->walls[0].removed_at));
-    SCREE_CHECK(s->solver.skin == 0.1 && strcmp(s->solver.overlap_scheme, "filtered") == 0);
+    SCREE_CHECK(isnan(s->solver.skin) && s->solver.reuse_pairs && s->solver.compare_spheres);
+    SCREE_CHECK(s->solver.find_separation && s->solver.remember_separation && s->solver.bound_separation);
+    SCREE_CHECK(strcmp(s->solver.overlap_scheme, "filtered") == 0);
     SCREE_CHECK_CLOSE(s->output.series, 2.0 / 200, 1e-16);
     SCREE_CHECK_CLOSE(s->output.frames, 2.0 / 50, 1e-16);
     SCREE_CHECK_CLOSE(s->output.checkpoint, 2.0 / 10, 1e-16);

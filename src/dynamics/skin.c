@@ -27,11 +27,10 @@ double scree_skin_of_least_cost(const scree_skin_input *input)
     const double search_per_pair = SEARCH_PER_PAIR + (input->has_meshes ? FIRST_LOOK_PER_PAIR : 0);
     const double before = radius + input->skin;
     double best = input->skin, least = INFINITY;
-    // half to twice the last one in steps of a sixteenth, between a thousandth of the radius and twice it
-    for (int k = 8; k <= 32; ++k)
+    // from a thousandth of the radius to twice it
+    for (double skin = 1e-3 * radius; skin <= 2 * radius; skin *= 17.0 / 16)
     {
-        const double skin = input->skin * k / 16, around = radius + skin;
-        if (skin < 1e-3 * radius || skin > 2 * radius) continue;
+        const double around = radius + skin;
         const double num_pairs = input->num_pairs * (around * around * around) / (before * before * before);
         const double search = SEARCH_PER_PARTICLE * input->num_particles + search_per_pair * num_pairs;
         const double steps_between = fmax(skin / way, 1);

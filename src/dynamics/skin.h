@@ -18,7 +18,7 @@ typedef struct scree_skin_input
     bool has_meshes;      ///< candidates are mostly pairs of meshes
 } scree_skin_input;
 
-/// The skin [m] that should cost least per step if things go on as they did, within a factor of two of the last one.
+/// The skin [m] that should cost least per step if things go on as they did.
 double scree_skin_of_least_cost(const scree_skin_input *input);
 
 /// [m] for the first search: what the scene says, or a tenth of the mean bounding radius.

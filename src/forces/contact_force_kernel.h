@@ -81,6 +81,7 @@ SCREE_FN void scree_contact_force_at(scree_contact_force_args a, int64_t c)
     }
     k.spring_force = scree_vec3_zero();
     k.torsion = 0;
+    k.radius_before = 0;
     k.rolling_moment = scree_vec3_zero();
     k.tangential_stiffness = 0;
     scree_real elastic_energy = 0, spring_energy = 0;
@@ -90,6 +91,7 @@ SCREE_FN void scree_contact_force_at(scree_contact_force_args a, int64_t c)
         k.spring_force = a.old_contacts.spring_force[old];
         k.tangential_stiffness = a.old_contacts.tangential_stiffness[old];
         if (has_extent) k.torsion = a.old_contacts.torsion[old];
+        if (has_extent) k.radius_before = a.old_contacts.radius[old];
         if (has_extent) k.rolling_moment = a.old_contacts.rolling_moment[old];
         spring_energy = a.old_contacts.spring_energy[old];
         elastic_energy = a.old_contacts.elastic_energy[old];

@@ -11,6 +11,7 @@ typedef struct scree_contact_kinematics
     scree_real volume;               ///< [m^3] > 0
     scree_real indentation;          ///< [m] > 0
     scree_real radius;               ///< [m] of the contact across the normal
+    scree_real radius_before;        ///< [m] of the step before, 0 for a new contact
     scree_vec3 normal;               ///< [1] unit, from j towards i
     scree_real area;                 ///< [m^2] length of the area vector; set if the law asks for it
     scree_vec3 lever;                ///< [m] of the normal force; set if the law has one, 0 otherwise
@@ -56,6 +57,13 @@ SCREE_FN scree_vec3 scree_normal_lever(scree_vec3 area_vector, scree_vec3 torque
 SCREE_FN scree_real scree_unloading_ratio(const scree_contact_kinematics *k, const scree_contact_force *f)
 {
     return f->tangential_stiffness < k->tangential_stiffness ? f->tangential_stiffness / k->tangential_stiffness : 1;
+}
+
+/// The vector, or one of length `limit` in its direction if it is longer.
+SCREE_FN scree_vec3 scree_cut_to_length(scree_vec3 v, scree_real limit)
+{
+    const scree_real squared = scree_vec3_dot(v, v);
+    return squared > limit * limit ? scree_vec3_scale(v, limit / scree_sqrt(squared)) : v;
 }
 
 /// History turned into the present tangent plane, keeping its length.

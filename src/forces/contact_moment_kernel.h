@@ -2,7 +2,8 @@
 /// Moments of a contact that has an extent: springs and dashpots are spread evenly over a disc of the contact's radius
 /// a across the normal,
 ///
-///     M_n += -k_t a^2/2 w_n dt;  M_n - 2 g sqrt(m* k_t) a^2/2 w_n is capped at 2/3 a mu F_n     Marshall (2009),
+///     M_n += -k_t a^2/2 w_n dt;  M_n - 2 g sqrt(m* k_t) a^2/2 w_n is capped at 2/3 a mu F_n     Marshall (2009);
+///     M_n itself too, and it falls with k_t a^2/2, as the tangential spring does with k_t
 ///     rocking M_t  = -2 g sqrt(m* k_n) a^2/4 w_t, capped at a/4 F_n (beyond it part of the disc would pull)
 ///
 /// Contacts of true spheres have none: a = 0. Without them a body that lies flat on one contact spins on for ever: at
@@ -25,15 +26,16 @@ SCREE_FN void scree_contact_moment(const scree_force_law *law, const scree_conta
     const scree_real stiffness = f->tangential_stiffness * half_square;
     scree_real torsion = 0;
     if (law->has_tangential_spring)
-        torsion = k->torsion * scree_unloading_ratio(k, f) - stiffness * twist * k->time_step;
-    scree_real moment = torsion - twist_damping * half_square * twist;
-    const scree_real limit = (scree_real)(2.0 / 3.0) * a * law->friction_coefficient * normal_force;
-    if (scree_abs(moment) > limit)
     {
-        f->is_turning = true;
-        moment = moment > 0 ? limit : -limit;
-        if (law->has_tangential_spring) torsion = moment;
+        const scree_real before = k->tangential_stiffness * (k->radius_before * k->radius_before / 2);
+        torsion =
+            (stiffness < before ? k->torsion * (stiffness / before) : k->torsion) - stiffness * twist * k->time_step;
     }
+    const scree_real limit = (scree_real)(2.0 / 3.0) * a * law->friction_coefficient * normal_force;
+    scree_real moment = torsion - twist_damping * half_square * twist;
+    f->is_turning = scree_abs(moment) > limit;
+    moment = scree_max(-limit, scree_min(limit, moment));
+    torsion = scree_max(-limit, scree_min(limit, torsion));
     f->torsion = torsion;
     if (stiffness > 0) f->spring_energy += torsion * torsion / (2 * stiffness);
 

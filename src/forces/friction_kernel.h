@@ -1,10 +1,11 @@
 /// \file friction_kernel.h
 /// Tangential force: spring with history, dashpot, Coulomb limit. The same for all models.
 ///
-///     F_s += -k_t dx_t, scaled by k_t/k_t_old while unloading; F_t = F_s - 2 g sqrt(m* k_t) v_t is capped at mu F_n
+///     F_s += -k_t dx_t, scaled by k_t/k_t_old while unloading; F_t = F_s - 2 g sqrt(m* k_t) v_t; both |F| <= mu F_n
 ///
-/// Bilock (2020), eqs. 4.8 and 4.9. History is turned into the present tangent plane before it is added to, and reset
-/// to the Coulomb value on slip.
+/// Bilock (2020), eqs. 4.8 and 4.9. History is turned into the present tangent plane before it is added to. On slip it
+/// is cut to the Coulomb value, not set to F_t: where the dashpot alone exceeds the limit, a spring that takes the
+/// dashpot's place would hold energy that nothing has put in. As it is, no step of the law gives energy.
 #ifndef SCREE_FRICTION_KERNEL_H
 #define SCREE_FRICTION_KERNEL_H
 
@@ -25,17 +26,12 @@ SCREE_FN void scree_friction(const scree_force_law *law, const scree_contact_kin
         spring = scree_vec3_add_scaled(spring, v_t, -k_t * k->time_step);
     }
     const scree_real damping = 2 * law->tangential_damping_ratio * scree_sqrt(k->effective_mass * k_t);
-    scree_vec3 force = scree_vec3_add_scaled(spring, v_t, -damping);
+    const scree_vec3 force = scree_vec3_add_scaled(spring, v_t, -damping);
 
     const scree_real limit = law->friction_coefficient * normal_force;
-    const scree_real squared = scree_vec3_dot(force, force);
-    f->is_slipping = squared > limit * limit;
-    if (f->is_slipping)
-    {
-        force = scree_vec3_scale(force, limit / scree_sqrt(squared));
-        if (law->has_tangential_spring) spring = force;
-    }
-    f->tangential_force = force;
+    f->is_slipping = scree_vec3_dot(force, force) > limit * limit;
+    f->tangential_force = scree_cut_to_length(force, limit);
+    spring = scree_cut_to_length(spring, limit);
     f->spring_force = spring;
     f->spring_energy = k_t > 0 ? scree_vec3_dot(spring, spring) / (2 * k_t) : 0;
 }

@@ -368,6 +368,56 @@ static void test_rolling_spring(void)
     SCREE_CHECK_CLOSE(f.rolling_moment.y, -0.5e-9 + first, 1e-14 * fabs(first));
 }
 
+/// Whatever a contact of constant or changing depth and width goes through, in no step do its tangential force and its
+/// moments give more energy than their springs let go: the law is passive.
+static void check_that_nothing_gives_energy(scree_rolling_resistance_kind rolling, uint64_t *seed)
+{
+    scree_force_law law = make_law(scree_test_random(seed), 0.05 + scree_test_random(seed));
+    law.has_moments = true;
+    law.rolling = rolling;
+    law.rolling_friction_coefficient = (scree_real)0.2;
+    law.rolling_damping_ratio = (scree_real)0.3;
+    scree_contact_kinematics k = make_sphere_contact(0.01, 1e-5);
+    k.effective_radius = (scree_real)0.01;
+    k.rolling_inertia = (scree_real)1e-6;
+    k.time_step = (scree_real)2e-5;
+    double stored = 0, turned_over = 0;
+    const double speed = pow(10, 4 * scree_test_random(seed) - 4);
+    for (int step = 0; step < 300; ++step)
+    {
+        const double d = 1e-5 * (1 + 0.9 * sin(0.1 * step));
+        k.volume = (scree_real)(M_PI * 0.01 * d * d);
+        k.indentation = (scree_real)d;
+        k.radius = (scree_real)(1e-3 * (0.2 + scree_test_random(seed)));
+        k.relative_velocity = scree_vec3_make((scree_real)(speed * (scree_test_random(seed) - 0.5)),
+                                              (scree_real)(speed * (scree_test_random(seed) - 0.5)), 0);
+        k.relative_rotation = scree_vec3_make((scree_real)(100 * speed * (scree_test_random(seed) - 0.5)), 0,
+                                              (scree_real)(100 * speed * (scree_test_random(seed) - 0.5)));
+        scree_contact_force f;
+        scree_contact_law(&law, &k, &f);
+        const double put_in = -(double)k.time_step * (double)(scree_vec3_dot(f.tangential_force, k.relative_velocity) +
+                                                              scree_vec3_dot(f.moment, k.relative_rotation));
+        turned_over += fabs(put_in) + (double)f.spring_energy;
+        SCREE_CHECK(put_in - ((double)f.spring_energy - stored) >= -1e-13 * turned_over);
+        stored = (double)f.spring_energy;
+        k.spring_force = f.spring_force;
+        k.torsion = f.torsion;
+        k.rolling_moment = f.rolling_moment;
+        k.tangential_stiffness = f.tangential_stiffness;
+        k.radius_before = k.radius;
+    }
+}
+
+static void test_friction_gives_no_energy(void)
+{
+    uint64_t seed = 5;
+    for (int n = 0; n < 200; ++n)
+        check_that_nothing_gives_energy(n % 3 == 0   ? SCREE_ROLLING_NONE
+                                        : n % 3 == 1 ? SCREE_ROLLING_CONSTANT
+                                                     : SCREE_ROLLING_SPRING,
+                                        &seed);
+}
+
 int main(void)
 {
     SCREE_RUN(test_sphere_volume_gives_hertz);
@@ -382,5 +432,6 @@ int main(void)
     SCREE_RUN(test_lever_of_the_normal_force);
     SCREE_RUN(test_constant_rolling_resistance);
     SCREE_RUN(test_rolling_spring);
+    SCREE_RUN(test_friction_gives_no_energy);
     return SCREE_TEST_END();
 }

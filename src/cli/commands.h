@@ -16,6 +16,7 @@ enum
 int scree_run_command(int argc, char **argv);     ///< run a scene
 int scree_check_command(int argc, char **argv);   ///< check a scene, tell its plan
 int scree_shape_command(int argc, char **argv);   ///< measure, mend, simplify meshes
+int scree_bench_command(int argc, char **argv);   ///< measure
 int scree_overlap_command(int argc, char **argv); ///< overlap of two meshes
 
 /// Prints every message to standard error, one a line, faults first.

@@ -18,6 +18,7 @@ static const program_command commands[] = {
     {"run", "run a scene into a folder, or continue a run", scree_run_command},
     {"check", "check a scene and print the plan of its run", scree_check_command},
     {"shape", "measure, check, simplify and convert meshes", scree_shape_command},
+    {"bench", "measure this machine: steps, beds, searches", scree_bench_command},
     {"overlap", "overlap volume, area vector and indentation of two meshes", scree_overlap_command},
 };
 enum

@@ -1,5 +1,7 @@
 /// \file plan.c
 /// The stages that a scene needs, why, and what they cost in memory.
+#include "dynamics/plan.h"
+
 #include "contact/sphere_contact_kernel.h"
 #include "dynamics/step_buffers.h"
 
@@ -17,6 +19,24 @@ static const size_t bytes_pair = sizeof(scree_candidate_pair) + 4 * sizeof(int32
 static const size_t bytes_mesh_pair =
     sizeof(scree_overlap_result) + sizeof(int32_t) + sizeof(scree_vec3) + 2 * sizeof(scree_real);
 static const size_t bytes_sphere_mesh_pair = 3 * sizeof(scree_sphere_contact) + 1;
+
+scree_plan_bytes scree_simulation_plan_bytes(const scree_simulation *simulation)
+{
+    const scree_simulation *s = simulation;
+    scree_plan_bytes bytes = {bytes_moving + bytes_constant + bytes_search, bytes_pair, bytes_contact};
+    bool has_spheres = false, has_meshes = false;
+    for (int64_t i = 0; i < s->particles.num_particles; ++i)
+    {
+        const bool is_sphere = s->shape_views[s->particles.shape[i]].kind == SCREE_KIND_SPHERE;
+        has_spheres |= is_sphere;
+        has_meshes |= !is_sphere;
+    }
+    size_t largest = has_meshes ? bytes_mesh_pair : 0;
+    if (has_spheres && (has_meshes || s->num_walls > 0) && bytes_sphere_mesh_pair > largest)
+        largest = bytes_sphere_mesh_pair;
+    bytes.pair += largest;
+    return bytes;
+}
 
 static void print_stage(FILE *out, const char *stage, const char *why, size_t bytes, const char *per)
 {

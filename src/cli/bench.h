@@ -1,0 +1,117 @@
+/// \file bench.h
+/// What the parts of scree bench share: the request, cases as JSON objects, tables of them, beds, measured steps.
+#ifndef SCREE_BENCH_H
+#define SCREE_BENCH_H
+
+#include "dynamics/state.h"
+#include "scree/scene.h"
+
+#include <jansson.h>
+
+/// The command line of a benchmark, understood. 0 and NULL: the benchmark's own choice.
+typedef struct scree_bench_request
+{
+    const char *name;     ///< of the benchmark
+    const char *shape;    ///< only this one
+    const char *scene;    ///< file of the rig
+    const char *json;     ///< where the result goes as JSON
+    const char *baseline; ///< result to compare with
+    const char *order;    ///< of particles in a bed: "lattice", "morton" or "random"
+    double depth;         ///< mean indentation over the bounding diameter in a bed
+    int64_t particles;
+    int64_t triangles;
+    int64_t steps;        ///< in one repetition
+    int64_t repetitions;  ///< at least 3
+    int64_t search_every; ///< [steps] between searches in a bed
+    int64_t threads;
+    bool shows_savings; ///< each piece of avoided work is switched off in turn
+} scree_bench_request;
+
+/// A column of the table of a benchmark.
+typedef struct scree_bench_column
+{
+    const char *key;    ///< of the case, "a.b" for b of the object a
+    const char *header; ///< its width is the column's
+    double factor;      ///< times the number; 0: a text
+    int decimals;
+} scree_bench_column;
+
+/// A benchmark while it runs.
+typedef struct scree_bench
+{
+    const scree_bench_request *request;
+    const scree_bench_column *columns; ///< (num_columns)
+    int num_columns;
+    json_t *cases; ///< array of objects; each has "name", "core_seconds" (its main time) and "spread"
+    scree_report *report;
+    bool has_header;
+    bool is_quiet; ///< no tables
+} scree_bench;
+
+/// Takes the case, keeps it and prints its row.
+scree_status scree_bench_add(scree_bench *bench, json_t *measured);
+/// The benchmark's own table head; more than one table is allowed.
+void scree_bench_set_columns(scree_bench *bench, const scree_bench_column *columns, int num_columns);
+
+/// Repeated measurements of one thing.
+typedef struct scree_bench_samples
+{
+    double *values; ///< (num), sorted
+    int num;
+} scree_bench_samples;
+
+/// Sorts them.
+void scree_bench_sort(scree_bench_samples samples);
+double scree_bench_median(scree_bench_samples samples);
+/// Largest minus smallest over the median, the noise of a measurement.
+double scree_bench_spread(scree_bench_samples samples);
+/// [s] of all threads of this process.
+double scree_bench_core_seconds(void);
+double scree_bench_wall_seconds(void);
+/// splitmix64, in [0, 1).
+double scree_bench_uniform(uint64_t *state);
+
+/// Processor, its threads, compiler, precision.
+json_t *scree_bench_machine(void);
+/// Ratios of the cases to those of a file. SCREE_READ_FAILED, SCREE_INVALID_INPUT.
+scree_status scree_bench_compare(const scree_bench *bench, const char *path);
+
+/// A dense bed of equal bodies.
+typedef struct scree_bench_bed
+{
+    const char *shape; ///< "cube", "schoenhardt", "rock" or "sphere"
+    int64_t triangles; ///< of a rock
+    int64_t particles;
+    double pairs_per_particle; ///< that touch, at most, in its inside
+    double depth;              ///< wanted mean indentation over the bounding diameter
+    const char *order;         ///< of the particles
+    const char *solver;        ///< keys of section solver, or ""
+} scree_bench_bed;
+
+/// Owns the scene and the simulation of it.
+typedef struct scree_bench_bodies
+{
+    scree_scene_file file;
+    scree_simulation *simulation;
+    double depth; ///< mean indentation of the touching pairs over the bounding diameter
+} scree_bench_bodies;
+
+/// Lattice, jittered, orientations at random, pushed apart until the mean indentation is as wanted and no more pairs
+/// touch than wanted.
+scree_status scree_bench_bed_create(scree_bench_bodies *bodies, const scree_bench_bed *bed, scree_report *report);
+void scree_bench_bed_destroy(scree_bench_bodies *bodies);
+
+/// Measures steps of a simulation: the case, with times per stage, touching pair and candidate, and bytes. NULL if a
+/// step fails. With search_every > 0 candidate pairs are searched that often.
+json_t *scree_bench_steps(scree_simulation *simulation, const scree_bench_request *request, scree_report *report);
+/// The columns that go with it.
+extern const scree_bench_column scree_bench_step_columns[];
+extern const int scree_bench_num_step_columns;
+
+scree_status scree_bench_broad_phase(scree_bench *bench);
+scree_status scree_bench_packing(scree_bench *bench);
+scree_status scree_bench_spheres(scree_bench *bench);
+scree_status scree_bench_rig(scree_bench *bench);
+scree_status scree_bench_scaling(scree_bench *bench);
+
+#endif

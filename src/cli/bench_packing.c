@@ -1,0 +1,147 @@
+/// \file bench_packing.c
+/// Whole steps of dense beds at rest: scree bench packing, spheres and scaling.
+#include "cli/bench.h"
+
+#include <omp.h>
+#include <stdio.h>
+#include <string.h>
+
+/// One bed, measured: its case, or NULL.
+static json_t *measure_bed(const scree_bench *bench, const scree_bench_bed *bed, const char *name)
+{
+    scree_bench_bodies bodies;
+    if (scree_bench_bed_create(&bodies, bed, bench->report) != SCREE_OK) return NULL;
+    json_t *measured = scree_bench_steps(bodies.simulation, bench->request, bench->report);
+    if (measured != NULL)
+    {
+        json_object_set_new(measured, "name", json_string(name));
+        json_object_set_new(measured, "mean_depth", json_real(bodies.depth));
+        json_object_set_new(measured, "order", json_string(bed->order));
+    }
+    scree_bench_bed_destroy(&bodies);
+    return measured;
+}
+
+static scree_status add_bed(scree_bench *bench, const scree_bench_bed *bed, const char *name)
+{
+    json_t *measured = measure_bed(bench, bed, name);
+    return measured != NULL ? scree_bench_add(bench, measured) : SCREE_INVALID_INPUT;
+}
+
+/// A piece of avoided work and the key that switches it off.
+typedef struct saving
+{
+    const char *name, *solver;
+} saving;
+
+static const saving savings[] = {
+    {"without compare_spheres", "compare_spheres: false"},
+    {"without find_separation", "find_separation: false"},
+    {"without remember_separation", "remember_separation: false"},
+    {"without bound_separation", "bound_separation: false"},
+    {"without reuse_pairs", "reuse_pairs: false"},
+    {"without all of these", "compare_spheres: false, find_separation: false, reuse_pairs: false"},
+};
+
+static scree_status add_savings(scree_bench *bench, scree_bench_bed bed, const char *name)
+{
+    scree_status status = SCREE_OK;
+    for (size_t k = 0; k < sizeof savings / sizeof *savings && status == SCREE_OK; ++k)
+    {
+        char text[96];
+        snprintf(text, sizeof text, "%s %s", name, savings[k].name);
+        bed.solver = savings[k].solver;
+        status = add_bed(bench, &bed, text);
+    }
+    return status;
+}
+
+scree_status scree_bench_packing(scree_bench *bench)
+{
+    static const scree_bench_bed beds[] = {
+        {"cube", 12, 0, 4, 1e-3, "", ""}, {"schoenhardt", 8, 0, 4, 1e-3, "", ""}, {"rock", 28, 0, 4, 1e-3, "", ""},
+        {"rock", 40, 0, 4, 1e-3, "", ""}, {"sphere", 0, 0, 4, 5e-3, "", ""},
+    };
+    const scree_bench_request *request = bench->request;
+    scree_bench_set_columns(bench, scree_bench_step_columns, scree_bench_num_step_columns);
+    scree_status status = SCREE_OK;
+    for (size_t k = 0; k < sizeof beds / sizeof *beds && status == SCREE_OK; ++k)
+    {
+        scree_bench_bed bed = beds[k];
+        if (request->shape != NULL && strcmp(request->shape, bed.shape) != 0) continue;
+        if (strcmp(bed.shape, "rock") == 0 && request->triangles > 0)
+        {
+            if (bed.triangles == 28) continue;
+            bed.triangles = request->triangles;
+        }
+        char name[64];
+        snprintf(name, sizeof name, strcmp(bed.shape, "rock") == 0 ? "%s %lld" : "%s", bed.shape,
+                 (long long)bed.triangles);
+        bed.particles = request->particles;
+        bed.order = request->order;
+        if (request->depth > 0) bed.depth = request->depth;
+        status = add_bed(bench, &bed, name);
+        if (status == SCREE_OK && request->shows_savings) status = add_savings(bench, bed, name);
+    }
+    return status;
+}
+
+scree_status scree_bench_spheres(scree_bench *bench)
+{
+    // five contacts each
+    const scree_bench_bed bed = {"sphere", 0, bench->request->particles, 2.5, 5e-3, bench->request->order, ""};
+    scree_bench_set_columns(bench, scree_bench_step_columns, scree_bench_num_step_columns);
+    scree_status status = add_bed(bench, &bed, "sphere");
+    if (status == SCREE_OK && bench->request->shows_savings) status = add_savings(bench, bed, "sphere");
+    return status;
+}
+
+/// How one bed's cost grows with its bodies, and falls with threads.
+static void print_scaling(const scree_bench *bench)
+{
+    size_t k;
+    const json_t *one;
+    double smallest = 1e300, largest = 0;
+    json_array_foreach(bench->cases, k, one)
+    {
+        const double particles = json_number_value(json_object_get(one, "particles"));
+        const double wall = json_number_value(json_object_get(one, "wall_seconds"));
+        const double per_contact = json_number_value(json_object_get(one, "core_us_per_contact"));
+        if (json_integer_value(json_object_get(one, "threads")) == 1)
+        {
+            smallest = per_contact < smallest ? per_contact : smallest;
+            largest = per_contact > largest ? per_contact : largest;
+            continue;
+        }
+        const json_t *alone = json_array_get(bench->cases, k - 1);
+        printf("%.0f particles: %lld threads are %.2f times as fast as one\n", particles,
+               (long long)json_integer_value(json_object_get(one, "threads")),
+               json_number_value(json_object_get(alone, "wall_seconds")) / wall);
+    }
+    if (largest > 0)
+        printf("one thread, time per touching pair: largest over smallest of all sizes %.3f\n", largest / smallest);
+}
+
+scree_status scree_bench_scaling(scree_bench *bench)
+{
+    scree_bench_bed bed = {"schoenhardt", 8, 0, 4, 1e-3, bench->request->order, ""};
+    if (bench->request->shape != NULL) bed.shape = bench->request->shape;
+    if (bench->request->depth > 0) bed.depth = bench->request->depth;
+    bed.triangles = bench->request->triangles > 0 ? bench->request->triangles : 40;
+    const int threads[2] = {1, bench->request->threads > 1 ? (int)bench->request->threads : omp_get_num_procs()};
+    scree_bench_set_columns(bench, scree_bench_step_columns, scree_bench_num_step_columns);
+    scree_status status = SCREE_OK;
+    int64_t num = bench->request->particles;
+    while (num > 10000) num /= 10;
+    for (; num <= bench->request->particles && status == SCREE_OK; num *= 10)
+    {
+        bed.particles = num;
+        for (int k = 0; k < 2 && status == SCREE_OK; ++k)
+        {
+            omp_set_num_threads(threads[k]);
+            status = add_bed(bench, &bed, bed.shape);
+        }
+    }
+    if (status == SCREE_OK && !bench->is_quiet) print_scaling(bench);
+    return status;
+}

@@ -6,16 +6,14 @@
 #ifndef SCREE_WIDE_TREE_KERNEL_H
 #define SCREE_WIDE_TREE_KERNEL_H
 
+#include "bvh/wide_boxes_kernel.h"
 #include "core/bits.h"
 
-#define SCREE_WIDE_CHILDREN 8
+#define SCREE_WIDE_CHILDREN SCREE_WIDE
 #define SCREE_WIDE_LEVELS 10 ///< enough for 2^30 items
 
 /// The boxes of eight children; of those that are not there, empty ones.
-typedef struct scree_wide_node
-{
-    float bounds[6][SCREE_WIDE_CHILDREN]; ///< lower x, y, z, upper x, y, z
-} scree_wide_node;
+typedef scree_wide_boxes scree_wide_node;
 
 /// Borrowed pointers.
 typedef struct scree_wide_tree_view
@@ -27,18 +25,10 @@ typedef struct scree_wide_tree_view
     int32_t num_items;
 } scree_wide_tree_view;
 
-/// Largest float not above x and smallest not below, or one step beyond these.
-SCREE_FN float scree_float_below(scree_real x)
-{
-    const float near = (float)x;
-    return near - (near < 0 ? -near : near) * FLT_EPSILON - FLT_MIN;
-}
-SCREE_FN float scree_float_above(scree_real x) { return -scree_float_below(-x); }
-
 /// What is looked for: boxes that overlap a box and reach into the half-space direction . x <= reach.
 typedef struct scree_wide_query
 {
-    float lower[3], upper[3];
+    scree_wide_range range;
     float direction[3];
     float reach;     ///< widened by the rounding of the products
     int32_t near[3]; ///< bounds of the corner that is deepest in the half-space
@@ -54,8 +44,8 @@ SCREE_FN scree_wide_query scree_wide_query_make(scree_box box, scree_vec3 direct
     scree_real rounding = 0;
     for (int32_t k = 0; k < 3; ++k)
     {
-        query.lower[k] = scree_float_below(lower[k]);
-        query.upper[k] = scree_float_above(upper[k]);
+        query.range.lower[k] = scree_float_below(lower[k]);
+        query.range.upper[k] = scree_float_above(upper[k]);
         query.direction[k] = (float)along[k];
         query.near[k] = along[k] > 0 ? k : k + 3;
         rounding += scree_abs(along[k]) * size;
@@ -70,23 +60,8 @@ SCREE_FN uint32_t scree_wide_node_query(const scree_wide_node *node, const scree
     const float *near_x = node->bounds[query->near[0]];
     const float *near_y = node->bounds[query->near[1]];
     const float *near_z = node->bounds[query->near[2]];
-    // tests of all children side by side first, bits after
-    int32_t meets[SCREE_WIDE_CHILDREN];
-#if defined(_OPENMP) && !defined(__CUDACC__)
-#pragma omp simd
-#endif
-    for (int32_t k = 0; k < SCREE_WIDE_CHILDREN; ++k)
-    {
-        const float least =
-            query->direction[0] * near_x[k] + query->direction[1] * near_y[k] + query->direction[2] * near_z[k];
-        meets[k] = (int32_t)(node->bounds[0][k] <= query->upper[0]) & (int32_t)(node->bounds[3][k] >= query->lower[0]) &
-                   (int32_t)(node->bounds[1][k] <= query->upper[1]) & (int32_t)(node->bounds[4][k] >= query->lower[1]) &
-                   (int32_t)(node->bounds[2][k] <= query->upper[2]) & (int32_t)(node->bounds[5][k] >= query->lower[2]) &
-                   (int32_t)(least <= query->reach);
-    }
-    uint32_t found = 0;
-    for (int32_t k = 0; k < SCREE_WIDE_CHILDREN; ++k) found |= (uint32_t)meets[k] << k;
-    return found;
+    return scree_wide_boxes_meet(node, &query->range) &
+           scree_wide_points_within(near_x, near_y, near_z, query->direction, query->reach);
 }
 
 /// Where a walk over the tree is.

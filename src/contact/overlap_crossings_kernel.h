@@ -176,7 +176,7 @@ SCREE_FN bool scree_overlap_find_segments(scree_overlap_slice *slice)
             for (; candidates != 0; candidates &= candidates - 1)
             {
                 const int32_t g = begin + scree_lowest_bit(candidates);
-                if (num > SCREE_INDEX_DIRECT && !scree_box_overlaps(a->triangle_boxes[f], b->triangle_boxes[g]))
+                if (num > SCREE_INDEX_DIRECT && !scree_box_meets(a->triangle_boxes + f, b->triangle_boxes + g))
                     continue;
                 if (!scree_overlap_meet(slice, f, g)) return false;
             }
@@ -219,13 +219,14 @@ SCREE_FN int32_t scree_overlap_find_links(const scree_overlap_slice *slice, scre
                                 (int32_t)(vertices[v[2]].inside == SCREE_INSIDE_UNKNOWN) << 2;
         if (unknown == 0) continue;
         const scree_overlap_triangle *triangle = scree_overlap_finish(body, t);
-        for (int32_t k = 0; k < 3; ++k)
+        // side k joins corner k to the next one
+        const int32_t touched = unknown | unknown >> 1 | unknown << 2;
+        for (uint64_t sides = (uint64_t)(touched & ~triangle->face.reversed & 7); sides != 0; sides &= sides - 1)
         {
-            const int32_t next = scree_next_corner(k);
-            if ((unknown & (1 << k | 1 << next)) == 0 || (triangle->face.reversed >> k & 1) != 0) continue;
+            const int32_t k = scree_lowest_bit(sides);
             scree_overlap_link *link = body->links + num++;
             link->v[0] = v[k];
-            link->v[1] = v[next];
+            link->v[1] = v[scree_next_corner(k)];
             link->change = 0;
             for (int32_t c = triangle->crossing[k]; c >= 0; c = slice->crossings[c].next)
                 link->change += slice->crossings[c].sign;
@@ -290,6 +291,8 @@ SCREE_FN void scree_overlap_find_inside(scree_overlap_slice *slice, int32_t side
 /// Segments, crossings and inside counts of both bodies. False if there are too many crossings.
 SCREE_FN bool scree_overlap_collect(scree_overlap_slice *slice, const scree_shape_view *const *shape)
 {
+    for (int32_t side = 0; side < 2; ++side)
+        for (int32_t t = 0; t < slice->body[side].num_triangles; ++t) scree_overlap_finish(slice->body + side, t);
     if (!scree_overlap_find_segments(slice))
     {
         slice->lack = SCREE_LACK_CROSSINGS;

@@ -5,6 +5,7 @@
 #define SCREE_OVERLAP_INTERVALS_KERNEL_H
 
 #include "contact/overlap_parts.h"
+#include "core/bits.h"
 
 /// Place of the neighbour across side k of kept triangle t, or -1 if the neighbour is not kept.
 SCREE_FN int32_t scree_kept_neighbour(const scree_overlap_body *body, const scree_shape_view *shape, int32_t t,
@@ -43,14 +44,17 @@ typedef struct scree_interval_walk
     int32_t crossing[2]; ///< the next that may enter, the next that may leave; -1: none
 } scree_interval_walk;
 
-/// Does the edge along side k of kept triangle t have intervals? Asked of the one of its triangles in which it runs up.
-SCREE_FN bool scree_overlap_edge_is_inside(const scree_overlap_body *body, int32_t t, int32_t k)
+/// Bits of the sides of kept triangle t, finished, that have intervals, among those that run up their vertex ids here.
+SCREE_FN uint64_t scree_overlap_inside_sides(const scree_overlap_body *body, int32_t t)
 {
     const scree_overlap_triangle *triangle = body->triangles + t;
-    if ((triangle->face.reversed >> k & 1) != 0) return false;
-    if (triangle->crossing[k] >= 0) return true;
-    return body->num_inside > 0 &&
-           body->vertices[triangle->v[k]].inside > 0; // without a crossing both ends are inside or none
+    const int32_t *v = triangle->v;
+    const int32_t *crossing = triangle->crossing;
+    // without a crossing both ends are inside or none
+    const int32_t sides = (int32_t)(crossing[0] >= 0) | (int32_t)(body->vertices[v[0]].inside > 0) |
+                          ((int32_t)(crossing[1] >= 0) | (int32_t)(body->vertices[v[1]].inside > 0)) << 1 |
+                          ((int32_t)(crossing[2] >= 0) | (int32_t)(body->vertices[v[2]].inside > 0)) << 2;
+    return (uint64_t)(sides & ~triangle->face.reversed);
 }
 
 SCREE_FN void scree_interval_walk_start(const scree_overlap_body *body, int32_t t, int32_t k, scree_interval_walk *walk)

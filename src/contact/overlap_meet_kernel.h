@@ -33,12 +33,11 @@ SCREE_FN scree_cut scree_cut_make(const scree_face *face, int32_t ups, bool is_o
     scree_cut cut;
     cut.lone = scree_lone_corner(ups);
     cut.is_up = (ups >> cut.lone & 1) != 0;
-    const int32_t next = scree_next_corner(cut.lone);
-    const int32_t before = scree_corner_before(cut.lone);
-    // what is left of a face after the part above the plane is cut off has the cut on its boundary, counter-clockwise
-    const bool starts_at_next = cut.is_up == is_of_b;
-    cut.first = starts_at_next ? next : before;
-    cut.last = starts_at_next ? before : next;
+    // what is left of a face after the part above the plane is cut off has the cut on its boundary, counter-clockwise;
+    // found by counting, since no branch could be foreseen here
+    const int32_t first = cut.lone + 2 - (int32_t)(cut.is_up == is_of_b);
+    cut.first = first - 3 * (int32_t)(first > 2);
+    cut.last = 3 - cut.lone - cut.first;
     cut.along_first = scree_vec3_sub(face->p[cut.first], face->p[cut.lone]);
     cut.along_last = scree_vec3_sub(face->p[cut.last], face->p[cut.lone]);
     return cut;
@@ -125,8 +124,8 @@ SCREE_FN scree_meet_verdict scree_faces_meet(const scree_face *f, const scree_fa
     // order of the sides of f and g along the line: > 0 if that of g comes after that of f
     const scree_cut cut_f = scree_cut_make(f, scree_corner_heights_ups(&of_f), false);
     const scree_cut cut_g = scree_cut_make(g, scree_corner_heights_ups(&of_g), true);
-    scree_vec3 between = scree_vec3_sub(g->p[cut_g.lone], f->p[cut_f.lone]);
-    if (cut_f.is_up != cut_g.is_up) between = scree_vec3_negate(between);
+    const scree_real sense = 1 - 2 * (scree_real)(cut_f.is_up != cut_g.is_up);
+    const scree_vec3 between = scree_vec3_scale(scree_vec3_sub(g->p[cut_g.lone], f->p[cut_f.lone]), sense);
     const scree_vec3 normal_first = scree_vec3_cross(between, cut_g.along_first);
     const scree_vec3 normal_last = scree_vec3_cross(between, cut_g.along_last);
     const scree_real first_to_last = scree_vec3_dot(cut_f.along_first, normal_last);

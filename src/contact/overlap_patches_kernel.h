@@ -117,7 +117,7 @@ SCREE_FN bool scree_next_solid_edge(scree_overlap_slice *slice, const scree_shap
             {
                 if (!walk->is_on_edge)
                 {
-                    if (!scree_overlap_edge_is_inside(body, walk->next, walk->side)) continue;
+                    if ((scree_overlap_inside_sides(body, walk->next) >> walk->side & 1) == 0) continue;
                     if (scree_kept_neighbour(body, shape[walk->part - 1], walk->next, walk->side) < 0) continue;
                     scree_interval_walk_start(body, walk->next, walk->side, &walk->intervals);
                     walk->is_on_edge = true;

@@ -157,10 +157,10 @@ SCREE_FN void scree_overlap_sum_intervals(scree_overlap_slice *slice, int32_t si
     for (int32_t t = 0; t < body->num_triangles; ++t)
     {
         if (!body->kept[t].is_finished) continue;
-        for (int32_t k = 0; k < 3; ++k)
+        for (uint64_t sides = scree_overlap_inside_sides(body, t); sides != 0; sides &= sides - 1)
         {
+            const int32_t k = scree_lowest_bit(sides);
             scree_interval_walk walk;
-            if (!scree_overlap_edge_is_inside(body, t, k)) continue;
             const int32_t right = scree_kept_neighbour(body, shape, t, k);
             if (right < 0)
             {

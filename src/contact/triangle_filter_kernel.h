@@ -189,59 +189,64 @@ SCREE_FN scree_box scree_filter_clipped_box(const scree_overlap_vertex *vertices
 {
     const int32_t outs = (int32_t)(vertices[v[0]].depth < 0) | (int32_t)(vertices[v[1]].depth < 0) << 1 |
                          (int32_t)(vertices[v[2]].depth < 0) << 2;
-    if (outs == 0) return scree_box_of_points(vertices[v[0]].point, vertices[v[1]].point, vertices[v[2]].point);
-    // the corner alone on its side, and the two places where the sides from there leave the half-space
+    // the corner alone on its side, and the two places where the sides from there leave the half-space: the other
+    // corners, up to rounding, if all are within; points are chosen, not branches, which could not be foreseen
     const int32_t lone = scree_lone_corner(outs);
     const scree_overlap_vertex *from = vertices + v[lone];
     const scree_overlap_vertex *next = vertices + v[scree_next_corner(lone)];
     const scree_overlap_vertex *last = vertices + v[scree_corner_before(lone)];
+    const scree_real to_next = from->depth / (from->depth - next->depth);
+    const scree_real to_last = from->depth / (from->depth - last->depth);
     const scree_vec3 at_next = scree_vec3_add_scaled(from->point, scree_vec3_sub(next->point, from->point),
-                                                     from->depth / (from->depth - next->depth));
+                                                     outs == 0 ? 1 : to_next);
     const scree_vec3 at_last = scree_vec3_add_scaled(from->point, scree_vec3_sub(last->point, from->point),
-                                                     from->depth / (from->depth - last->depth));
-    if (from->depth >= 0) return scree_box_of_points(from->point, at_next, at_last);
-    scree_box box = scree_box_of_points(at_next, at_last, next->point);
-    return scree_box_with_point(box, last->point);
+                                                     outs == 0 ? 1 : to_last);
+    const bool is_from_within = from->depth >= 0;
+    const scree_box box = scree_box_of_points(at_next, at_last, (is_from_within ? from : next)->point);
+    return scree_box_with_point(box, (is_from_within ? from : last)->point);
+}
+
+/// The first `num` triangles are what is kept for a region.
+SCREE_FN void scree_filter_end(scree_overlap_body *body, const scree_filter_region *region, int32_t num)
+{
+    scree_box all = scree_box_empty();
+    for (int32_t t = 0; t < num; ++t) all = scree_box_union(all, body->triangle_boxes[t]);
+    body->num_triangles = num;
+    body->box = all;
+    body->region = region->box;
 }
 
 /// Boxes of the kept triangles, clipped to the half-space; drops those that do not reach into the region with it.
 SCREE_FN void scree_filter_clip(scree_overlap_body *body, const scree_filter_region *region, scree_real margin)
 {
     const scree_vec3 margins = scree_vec3_make(margin, margin, margin);
-    scree_box all = scree_box_empty();
     int32_t num = 0;
     for (int32_t t = 0; t < body->num_triangles; ++t)
     {
+        // written first and kept or not
         const scree_kept_triangle kept = body->kept[t];
         scree_box box = scree_filter_clipped_box(body->vertices, kept.v);
         box.lower = scree_vec3_sub(box.lower, margins);
         box.upper = scree_vec3_add(box.upper, margins);
-        if (scree_filter_misses(region, &box)) continue;
         body->kept[num] = kept;
-        body->triangle_boxes[num++] = box;
-        all = scree_box_union(all, box);
+        body->triangle_boxes[num] = box;
+        num += (int32_t)!scree_filter_misses(region, &box);
     }
-    body->num_triangles = num;
-    body->box = all;
-    body->region = region->box;
+    scree_filter_end(body, region, num);
 }
 
 /// Drops triangles that do not reach into a smaller region with the same half-space.
 SCREE_FN void scree_filter_again(scree_overlap_body *body, const scree_filter_region *region)
 {
-    scree_box all = scree_box_empty();
     int32_t num = 0;
     for (int32_t t = 0; t < body->num_triangles; ++t)
     {
         const scree_box box = body->triangle_boxes[t];
-        if (scree_filter_misses(region, &box)) continue;
         body->kept[num] = body->kept[t];
-        body->triangle_boxes[num++] = box;
-        all = scree_box_union(all, box);
+        body->triangle_boxes[num] = box;
+        num += (int32_t)!scree_filter_misses(region, &box);
     }
-    body->num_triangles = num;
-    body->box = all;
-    body->region = region->box;
+    scree_filter_end(body, region, num);
 }
 
 /// Is a vertex of the body beyond doubt outside the other?

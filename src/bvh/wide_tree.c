@@ -5,6 +5,7 @@
 void scree_wide_tree_destroy(scree_wide_tree *tree)
 {
     free(tree->nodes);
+    free(tree->corners);
     free(tree->items);
     *tree = (scree_wide_tree){0};
 }
@@ -98,5 +99,28 @@ scree_status scree_wide_tree_build(scree_wide_tree *tree, const scree_lbvh *lbvh
     fill_nodes(tree, boxes, num_nodes);
     tree->view.nodes = tree->nodes;
     tree->view.items = tree->items;
+    return SCREE_OK;
+}
+
+scree_status scree_wide_tree_add_corners(scree_wide_tree *tree, const scree_vec3 *corners)
+{
+    const int32_t num_items = tree->view.num_items;
+    const int32_t num_nodes = (num_items + SCREE_WIDE_CHILDREN - 1) / SCREE_WIDE_CHILDREN;
+    // boxes of children that are not there are empty, so their corners may be anything
+    tree->corners = calloc((size_t)num_nodes + 1, sizeof *tree->corners);
+    if (tree->corners == NULL) return SCREE_OUT_OF_MEMORY;
+    for (int32_t i = 0; i < num_items; ++i)
+    {
+        scree_wide_corners *node = tree->corners + i / SCREE_WIDE_CHILDREN;
+        const int32_t child = i % SCREE_WIDE_CHILDREN;
+        for (int c = 0; c < 3; ++c)
+        {
+            const scree_vec3 p = corners[3 * (int64_t)tree->items[i] + c];
+            node->x[c][child] = (float)p.x;
+            node->y[c][child] = (float)p.y;
+            node->z[c][child] = (float)p.z;
+        }
+    }
+    tree->view.corners = tree->corners;
     return SCREE_OK;
 }

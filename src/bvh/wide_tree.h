@@ -11,6 +11,7 @@ typedef struct scree_wide_tree
 {
     scree_wide_tree_view view;
     scree_wide_node *nodes;
+    scree_wide_corners *corners;
     int32_t *items;
 } scree_wide_tree;
 
@@ -18,6 +19,8 @@ typedef struct scree_wide_tree
 /// SCREE_TOO_MANY.
 scree_status scree_wide_tree_build(scree_wide_tree *tree, const scree_lbvh *lbvh, const scree_box *boxes,
                                    int32_t num_boxes);
+/// Adds `corners` (num_boxes, 3) of the triangles in the boxes to a tree that is built. SCREE_OUT_OF_MEMORY.
+scree_status scree_wide_tree_add_corners(scree_wide_tree *tree, const scree_vec3 *corners);
 void scree_wide_tree_destroy(scree_wide_tree *tree);
 
 #endif

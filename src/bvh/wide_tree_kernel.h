@@ -15,10 +15,17 @@
 /// The boxes of eight children; of those that are not there, empty ones.
 typedef scree_wide_boxes scree_wide_node;
 
+/// The corners of eight triangles.
+typedef struct scree_wide_corners
+{
+    float x[3][SCREE_WIDE_CHILDREN], y[3][SCREE_WIDE_CHILDREN], z[3][SCREE_WIDE_CHILDREN];
+} scree_wide_corners;
+
 /// Borrowed pointers.
 typedef struct scree_wide_tree_view
 {
     const scree_wide_node *nodes;          ///< level by level from the lowest, or NULL
+    const scree_wide_corners *corners;     ///< (nodes of the lowest level) of the items, triangles; NULL: unknown
     const int32_t *items;                  ///< (num_items) in the order of the lowest level
     int32_t first_node[SCREE_WIDE_LEVELS]; ///< of each level
     int32_t num_levels;
@@ -64,6 +71,25 @@ SCREE_FN uint32_t scree_wide_node_query(const scree_wide_node *node, const scree
            scree_wide_points_within(near_x, near_y, near_z, query->direction, query->reach);
 }
 
+/// The same for a node of the lowest level: triangles by their corners, not their boxes, in the half-space.
+SCREE_FN uint32_t scree_wide_leaf_query(const scree_wide_tree_view *tree, int32_t node, const scree_wide_query *query)
+{
+    if (tree->corners == NULL) return scree_wide_node_query(tree->nodes + node, query);
+    const scree_wide_corners *corners = tree->corners + node;
+    uint32_t within = 0;
+    for (int32_t c = 0; c < 3; ++c)
+        within |= scree_wide_points_within(corners->x[c], corners->y[c], corners->z[c], query->direction, query->reach);
+    return within & scree_wide_boxes_meet(tree->nodes + node, &query->range);
+}
+
+/// Of a node of any level.
+SCREE_FN uint32_t scree_wide_query_at(const scree_wide_tree_view *tree, int32_t level, int32_t node,
+                                      const scree_wide_query *query)
+{
+    return level == 0 ? scree_wide_leaf_query(tree, node, query)
+                      : scree_wide_node_query(tree->nodes + tree->first_node[level] + node, query);
+}
+
 /// Where a walk over the tree is.
 typedef struct scree_wide_walk
 {
@@ -78,7 +104,7 @@ SCREE_FN void scree_wide_walk_start(const scree_wide_tree_view *tree, const scre
     walk->level = tree->num_levels - 1;
     if (walk->level < 0) return;
     walk->node[walk->level] = 0;
-    walk->open[walk->level] = scree_wide_node_query(tree->nodes + tree->first_node[walk->level], query);
+    walk->open[walk->level] = scree_wide_query_at(tree, walk->level, 0, query);
 }
 
 /// Next node of the lowest level of which something may meet the query: its number, its children in *found; -1 at the
@@ -103,7 +129,7 @@ SCREE_FN int32_t scree_wide_walk_next(const scree_wide_tree_view *tree, const sc
         walk->open[walk->level] &= walk->open[walk->level] - 1;
         --walk->level;
         walk->node[walk->level] = child;
-        walk->open[walk->level] = scree_wide_node_query(tree->nodes + tree->first_node[walk->level] + child, query);
+        walk->open[walk->level] = scree_wide_query_at(tree, walk->level, child, query);
     }
     return -1;
 }

@@ -197,10 +197,10 @@ SCREE_FN scree_box scree_filter_clipped_box(const scree_overlap_vertex *vertices
     const scree_overlap_vertex *last = vertices + v[scree_corner_before(lone)];
     const scree_real to_next = from->depth / (from->depth - next->depth);
     const scree_real to_last = from->depth / (from->depth - last->depth);
-    const scree_vec3 at_next = scree_vec3_add_scaled(from->point, scree_vec3_sub(next->point, from->point),
-                                                     outs == 0 ? 1 : to_next);
-    const scree_vec3 at_last = scree_vec3_add_scaled(from->point, scree_vec3_sub(last->point, from->point),
-                                                     outs == 0 ? 1 : to_last);
+    const scree_vec3 at_next =
+        scree_vec3_add_scaled(from->point, scree_vec3_sub(next->point, from->point), outs == 0 ? 1 : to_next);
+    const scree_vec3 at_last =
+        scree_vec3_add_scaled(from->point, scree_vec3_sub(last->point, from->point), outs == 0 ? 1 : to_last);
     const bool is_from_within = from->depth >= 0;
     const scree_box box = scree_box_of_points(at_next, at_last, (is_from_within ? from : next)->point);
     return scree_box_with_point(box, (is_from_within ? from : last)->point);

@@ -61,6 +61,19 @@ static double middle_of(double a, double b, double c)
     return c < low ? low : c > high ? high : c;
 }
 
+/// The corners of the triangles to the wide tree.
+static scree_status add_corners(scree_shape *shape)
+{
+    const scree_mesh *mesh = &shape->mesh;
+    scree_vec3 *corners = malloc(3 * (size_t)mesh->num_triangles * sizeof *corners);
+    if (corners == NULL) return SCREE_OUT_OF_MEMORY;
+    for (int32_t i = 0; i < mesh->num_triangles; ++i)
+        for (int k = 0; k < 3; ++k) corners[3 * (int64_t)i + k] = mesh->vertices[mesh->triangles[i].v[k]];
+    const scree_status status = scree_wide_tree_add_corners(&shape->wide_tree, corners);
+    free(corners);
+    return status;
+}
+
 /// The trees over the triangles, in the frame of the shape.
 static scree_status build_trees(scree_shape *shape)
 {
@@ -75,6 +88,7 @@ static scree_status build_trees(scree_shape *shape)
     scree_status status = scree_lbvh_build(&shape->tree, boxes, mesh->num_triangles);
     if (status == SCREE_OK && mesh->num_triangles >= SCREE_LARGE_SHAPE)
         status = scree_wide_tree_build(&shape->wide_tree, &shape->tree, boxes, mesh->num_triangles);
+    if (status == SCREE_OK && shape->wide_tree.view.nodes != NULL) status = add_corners(shape);
     free(boxes);
     return status;
 }

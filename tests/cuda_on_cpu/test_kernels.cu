@@ -123,6 +123,7 @@ static const scree_shape_view *shapes_on(side &where)
         if (wide.nodes == nullptr) continue;
         wide.nodes = where.copy(wide.nodes, wide.first_node[wide.num_levels - 1] + 1);
         wide.items = where.copy(wide.items, wide.num_items);
+        wide.corners = where.copy(wide.corners, (wide.num_items + SCREE_WIDE_CHILDREN - 1) / SCREE_WIDE_CHILDREN);
         view.support_map = where.copy(view.support_map, SCREE_SUPPORT_VALUES);
     }
     return where.copy(views.data(), (int64_t)views.size());

@@ -236,8 +236,66 @@ static void test_whole_space(void)
     free(boxes);
 }
 
+/// Triangles known by their corners: in the half-space the lowest level judges by these, not by the boxes.
+static void test_corners(void)
+{
+    enum
+    {
+        NUM = 300
+    };
+    uint64_t state = 30;
+    scree_vec3 corners[3 * NUM];
+    scree_box boxes[NUM];
+    const scree_test_boxes kind = {.extent = 10, .smallest = 0.1, .largest = 5, .elongation = 5};
+    for (int i = 0; i < NUM; ++i)
+    {
+        const scree_box box = scree_test_box(&kind, &state);
+        boxes[i] = scree_box_empty();
+        for (int c = 0; c < 3; ++c)
+        {
+            const double t[3] = {scree_test_random(&state), scree_test_random(&state), scree_test_random(&state)};
+            corners[3 * i + c] = scree_vec3_make(box.lower.x + (scree_real)t[0] * (box.upper.x - box.lower.x),
+                                                 box.lower.y + (scree_real)t[1] * (box.upper.y - box.lower.y),
+                                                 box.lower.z + (scree_real)t[2] * (box.upper.z - box.lower.z));
+            boxes[i] = scree_box_with_point(boxes[i], corners[3 * i + c]);
+        }
+    }
+    scree_lbvh lbvh = {0};
+    scree_wide_tree tree = {0};
+    SCREE_CHECK_INT(scree_lbvh_build(&lbvh, boxes, NUM), SCREE_OK);
+    SCREE_CHECK_INT(scree_wide_tree_build(&tree, &lbvh, boxes, NUM), SCREE_OK);
+    SCREE_CHECK_INT(scree_wide_tree_add_corners(&tree, corners), SCREE_OK);
+    const double size = size_of(boxes, NUM);
+    int num_by_box_only = 0, num_missed = 0, num_far = 0;
+    for (int n = 0; n < 500; ++n)
+    {
+        brute_query query = random_query(&kind, size, &state);
+        const scree_vec3 touched = corners[scree_test_random_bits(&state) % (3 * NUM)];
+        if (n % 2 == 0) query.reach = (double)scree_vec3_dot(query.direction, touched);
+        int32_t num_found[NUM] = {0};
+        find(&tree.view, &query, num_found);
+        const double deepened = 12 * (double)FLT_EPSILON * query.direction1 * size;
+        for (int i = 0; i < NUM; ++i)
+        {
+            double least = 1e300;
+            for (int c = 0; c < 3; ++c)
+                least = fmin(least, (double)scree_vec3_dot(query.direction, corners[3 * i + c]));
+            const bool does_meet = meets(&query, boxes[i], 0, 1e300) && least <= query.reach;
+            num_missed += does_meet && num_found[i] == 0;
+            num_far += num_found[i] > 0 && least > query.reach + deepened + 2 * (double)FLT_EPSILON * fabs(query.reach);
+            num_by_box_only += num_found[i] == 0 && meets(&query, boxes[i], 0, 0);
+        }
+    }
+    SCREE_CHECK_INT(num_missed, 0);
+    SCREE_CHECK_INT(num_far, 0);
+    SCREE_CHECK(num_by_box_only > 100);
+    scree_wide_tree_destroy(&tree);
+    scree_lbvh_destroy(&lbvh);
+}
+
 int main(void)
 {
+    SCREE_RUN(test_corners);
     SCREE_RUN(test_ordinary);
     SCREE_RUN(test_equal_and_flat);
     SCREE_RUN(test_sizes);

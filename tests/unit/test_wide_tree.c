@@ -267,7 +267,7 @@ static void test_corners(void)
     SCREE_CHECK_INT(scree_wide_tree_add_corners(&tree, corners), SCREE_OK);
     const double size = size_of(boxes, NUM);
     int num_by_box_only = 0, num_missed = 0, num_far = 0;
-    for (int n = 0; n < 500; ++n)
+    for (int n = 0; n < 3000; ++n)
     {
         brute_query query = random_query(&kind, size, &state);
         const scree_vec3 touched = corners[scree_test_random_bits(&state) % (3 * NUM)];

@@ -64,7 +64,8 @@ extern "C"
         SCREE_SHAPE_SCHOENHARDT,
         SCREE_SHAPE_SPHERE,
         SCREE_SHAPE_ROCK,
-        SCREE_SHAPE_TURNED
+        SCREE_SHAPE_TURNED,
+        SCREE_SHAPE_CLUMP
     } scree_shape_source;
 
     /// Corner of a profile that is turned about z.
@@ -73,6 +74,13 @@ extern "C"
         double radius; ///< [m] distance from the axis
         double height; ///< [m] along it
     } scree_profile_point;
+
+    /// Sphere of a clump.
+    typedef struct scree_clump_sphere
+    {
+        double position[3]; ///< [m] of its centre
+        double radius;      ///< [m]
+    } scree_clump_sphere;
 
     typedef struct scree_shape_def
     {
@@ -84,7 +92,9 @@ extern "C"
         int64_t seed;      ///< of a rock
         scree_profile_point *profile; ///< of turned: closed polygon
         uint32_t num_profile;
-        int64_t segments; ///< of turned: sides of the cross-sections
+        int64_t segments;            ///< of turned: sides of the cross-sections
+        scree_clump_sphere *spheres; ///< of a clump
+        uint32_t num_spheres;
         double offset[3]; ///< [m] added to every vertex
         int64_t copies;   ///< of the shifted mesh, turned evenly about z: one body of several pieces
     } scree_shape_def;

@@ -5,6 +5,11 @@
 
 #include "bvh/broad_phase.h"
 
+/// Bits of a patch that count the contacts of one part of a pair. Above them stands the part: which two spheres of
+/// clumps, or which sphere of a clump on a mesh; 0 between other bodies. A part stays the same from step to step, so
+/// history never passes from one sphere to another.
+#define SCREE_PATCH_BITS 15
+
 /// Owns its arrays, all (num_contacts) unless stated. Start from {0}.
 /// i < j; j may be a wall (id num_particles + w). Vectors in world axes.
 typedef struct scree_contact_list
@@ -17,7 +22,7 @@ typedef struct scree_contact_list
 
     // geometry, from the narrow phase
     scree_candidate_pair *bodies;
-    int32_t *patch;          ///< 0, 1, ... within the pair
+    int32_t *patch;          ///< part << SCREE_PATCH_BITS, plus 0, 1, ... within the part
     scree_real *volume;      ///< [m^3]
     scree_real *indentation; ///< [m]
     scree_real *radius; ///< * [m] of the contact across the normal, about the contact point; 0 for a sphere's contact,

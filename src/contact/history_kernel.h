@@ -1,6 +1,7 @@
 /// \file history_kernel.h
-/// Which contact of the step before a contact continues: same pair and patch. Both lists are sorted by (i, j, patch),
-/// so the old one is found by its pair while the candidate pairs stay, and by bisection after they have changed.
+/// Which contact of the step before a contact continues: same pair and part of it, see SCREE_PATCH_BITS. Both lists are
+/// sorted by (i, j, patch), so the old one is found by its pair while the candidate pairs stay, and by bisection after
+/// they have changed.
 #ifndef SCREE_HISTORY_KERNEL_H
 #define SCREE_HISTORY_KERNEL_H
 
@@ -12,6 +13,8 @@ typedef struct scree_history_match_args
     const int64_t *first_of_pair;           ///< (num_pairs + 1) present contacts of each
     const int64_t *old_first_of_pair;       ///< (num_pairs + 1) old contacts of each, or NULL if the pairs have changed
     const scree_candidate_pair *old_bodies; ///< (num_old)
+    const int32_t *patch;                   ///< (num_contacts)
+    const int32_t *old_patch;               ///< (num_old)
     const scree_vec3 *arm;                  ///< (num_contacts)
     const scree_vec3 *old_arm;              ///< (num_old)
     int64_t num_old;
@@ -40,7 +43,13 @@ SCREE_FN scree_real scree_history_distance(scree_vec3 a, scree_vec3 b)
     return scree_vec3_dot(d, d);
 }
 
-/// All contacts of candidate pair p. Several patches of one pair take their nearest old patch that is still free,
+/// Do two contacts of one pair belong to the same part of it?
+SCREE_FN bool scree_history_same_part(int32_t patch, int32_t old_patch)
+{
+    return patch >> SCREE_PATCH_BITS == old_patch >> SCREE_PATCH_BITS;
+}
+
+/// All contacts of candidate pair p. Several patches of one part take their nearest old patch that is still free,
 /// in ascending order of patch.
 SCREE_FN void scree_history_match_at(scree_history_match_args a, int64_t p)
 {
@@ -59,7 +68,7 @@ SCREE_FN void scree_history_match_at(scree_history_match_args a, int64_t p)
         old_end = old_begin;
         while (old_end < a.num_old && a.old_bodies[old_end].i == key.i && a.old_bodies[old_end].j == key.j) ++old_end;
     }
-    if (end - begin == 1 && old_end - old_begin == 1)
+    if (end - begin == 1 && old_end - old_begin == 1 && scree_history_same_part(a.patch[begin], a.old_patch[old_begin]))
     {
         a.old_of_contact[begin] = old_begin;
         a.is_continued[old_begin] = 1;
@@ -71,6 +80,7 @@ SCREE_FN void scree_history_match_at(scree_history_match_args a, int64_t p)
         scree_real best_distance = SCREE_REAL_MAX;
         for (int64_t o = old_begin; o < old_end; ++o)
         {
+            if (!scree_history_same_part(a.patch[c], a.old_patch[o])) continue;
             const scree_real distance = scree_history_distance(a.arm[c], a.old_arm[o]);
             if (!a.is_continued[o] && distance < best_distance)
             {

@@ -20,13 +20,16 @@ typedef struct pair_memory
 typedef enum pair_kind
 {
     MESH_MESH,
-    SPHERE_MESH,
+    SPHERE_MESH, // or clump
     SPHERE_SPHERE,
+    CLUMP_CLUMP, // or one of them a sphere
     NUM_PAIR_KINDS
 } pair_kind;
 
-static const pair_kind kind_of_pair[2][2] = {
-    [SCREE_KIND_MESH] = {MESH_MESH, SPHERE_MESH}, [SCREE_KIND_SPHERE] = {SPHERE_MESH, SPHERE_SPHERE}};
+static const pair_kind kind_of_pair[SCREE_NUM_SHAPE_KINDS][SCREE_NUM_SHAPE_KINDS] = {
+    [SCREE_KIND_MESH] = {MESH_MESH, SPHERE_MESH, SPHERE_MESH},
+    [SCREE_KIND_SPHERE] = {SPHERE_MESH, SPHERE_SPHERE, CLUMP_CLUMP},
+    [SCREE_KIND_CLUMP] = {SPHERE_MESH, CLUMP_CLUMP, CLUMP_CLUMP}};
 
 /// The pairs of one kind, in ascending order.
 typedef struct pair_batch
@@ -299,10 +302,10 @@ static scree_status find_overlaps(scree_narrow_phase *narrow_phase, const scree_
     return SCREE_OK;
 }
 
-/// All bodies as spheres, if there are any in the pairs.
+/// All bodies as spheres, if two of them may meet.
 static scree_status place_spheres(struct scree_narrow_phase_buffers *b, const scree_bodies *bodies)
 {
-    if (b->batches[SPHERE_SPHERE].num + b->batches[SPHERE_MESH].num == 0) return SCREE_OK;
+    if (b->batches[SPHERE_SPHERE].num == 0) return SCREE_OK;
     if (bodies->num_bodies > b->max_bodies)
     {
         free(b->spheres);
@@ -331,6 +334,7 @@ static scree_status find_on_meshes(struct scree_narrow_phase_buffers *b, scree_s
         // as above
         for (int64_t m = 0; m < batch->num; ++m)
             if (b->num_contacts[batch->pairs[m]] > max_found) max_found = b->num_contacts[batch->pairs[m]];
+        if (max_found >> SCREE_PATCH_BITS > 0) return SCREE_TOO_MANY;
         is_complete = max_found <= b->max_found;
     }
     return SCREE_OK;
@@ -385,6 +389,8 @@ static scree_status compact(const struct scree_narrow_phase_buffers *b, scree_sp
     args.list = *list;
     args.batch = b->batches[SPHERE_SPHERE].pairs;
     scree_sphere_sphere_write_launch(args, b->batches[SPHERE_SPHERE].num);
+    args.batch = b->batches[CLUMP_CLUMP].pairs;
+    scree_clump_clump_write_launch(args, b->batches[CLUMP_CLUMP].num);
     args.batch = b->batches[SPHERE_MESH].pairs;
     args.found = b->found;
     args.max_found = b->max_found;
@@ -416,6 +422,8 @@ scree_status scree_narrow_phase_find(scree_narrow_phase *narrow_phase, const scr
     if (status != SCREE_OK) return status;
     args.batch = b->batches[SPHERE_SPHERE].pairs;
     scree_sphere_sphere_count_launch(args, b->batches[SPHERE_SPHERE].num);
+    args.batch = b->batches[CLUMP_CLUMP].pairs;
+    scree_clump_clump_count_launch(args, b->batches[CLUMP_CLUMP].num);
     status = compact(b, args, num_pairs, list);
     if (status != SCREE_OK) return status;
 

@@ -28,7 +28,7 @@ typedef struct scree_narrow_phase_counts
     int64_t num_without_normal;
     int64_t num_fallbacks;
     scree_real worst_residual;
-    int64_t num_inside; ///< centres of spheres inside the solid of a mesh
+    int64_t num_inside; ///< spheres or clumps with a centre of a sphere inside the solid of a mesh
     scree_real largest_indentation;
 } scree_narrow_phase_counts;
 

@@ -27,6 +27,7 @@ typedef struct scree_sphere_contact
     scree_real indentation; ///< [m]
     scree_real weight;      ///< [1] in (0, 1]; below 1 where contacts share
     int32_t rank;           ///< on a mesh: 0 in a face, 1 on an edge, 2 in a vertex
+    int32_t sphere;         ///< of the clump
 } scree_sphere_contact;
 
 /// Two spheres; `between` leads from the other centre to the one that the normal points to. False: apart, or centres
@@ -46,6 +47,7 @@ SCREE_FN bool scree_sphere_sphere_contact(scree_vec3 between, scree_real sum_of_
     contact->indentation = sum_of_radii - distance;
     contact->weight = 1;
     contact->rank = 0;
+    contact->sphere = 0;
     return true;
 }
 
@@ -75,6 +77,7 @@ SCREE_FN int32_t scree_add_sphere_contact(scree_sphere_contact *contacts, int32_
     added.indentation = radius - approach.height;
     added.weight = 1;
     added.rank = approach.rank;
+    added.sphere = 0;
     for (int32_t k = 0; k < num && k < max_contacts; ++k)
     {
         const scree_vec3 d =

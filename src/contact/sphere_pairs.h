@@ -11,5 +11,7 @@ SCREE_DECLARE_LAUNCH(scree_sphere_sphere_count)
 SCREE_DECLARE_LAUNCH(scree_sphere_sphere_write)
 SCREE_DECLARE_LAUNCH(scree_sphere_mesh_count)
 SCREE_DECLARE_LAUNCH(scree_sphere_mesh_write)
+SCREE_DECLARE_LAUNCH(scree_clump_clump_count)
+SCREE_DECLARE_LAUNCH(scree_clump_clump_write)
 
 #endif

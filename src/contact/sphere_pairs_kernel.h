@@ -1,7 +1,10 @@
 /// \file sphere_pairs_kernel.h
-/// Candidate pairs of spheres to contacts. Two passes: how many contacts each pair has, then, with the places in the
-/// list known, the contacts. Two spheres are simply looked at again in the second pass; what was found on a mesh waits
-/// in an array of its own.
+/// Candidate pairs of spheres and of clumps of them to contacts. Two passes: how many contacts each pair has, then,
+/// with the places in the list known, the contacts. Two spheres are simply looked at again in the second pass; what was
+/// found on a mesh waits in an array of its own.
+///
+/// A clump touches wherever one of its spheres does, each a contact of its own with a patch that says which sphere it
+/// was. A sphere is a clump of one; only where two of them meet is there a way of its own, the short one.
 #ifndef SCREE_SPHERE_PAIRS_KERNEL_H
 #define SCREE_SPHERE_PAIRS_KERNEL_H
 
@@ -9,19 +12,12 @@
 #include "contact/narrow_phase.h"
 #include "contact/sphere_contact_kernel.h"
 
-/// A body as spheres see it: where it is, and how large if it is one.
-typedef struct scree_sphere
-{
-    scree_vec3 centre; ///< [m]
-    scree_real radius; ///< [m]; 0: not a sphere
-} scree_sphere;
-
 typedef struct scree_place_spheres_args
 {
     const scree_shape_view *shapes;
     const int32_t *shape;   ///< (num_bodies)
     const scree_pose *pose; ///< (num_bodies)
-    scree_sphere *spheres;  ///< (num_bodies) out
+    scree_sphere *spheres;  ///< (num_bodies) out; radius 0: not a sphere
 } scree_place_spheres_args;
 
 /// Body i; what the pairs need of it, in half a cache line.
@@ -34,7 +30,7 @@ SCREE_FN void scree_place_spheres_at(scree_place_spheres_args a, int64_t i)
 
 typedef struct scree_sphere_pairs_args
 {
-    const scree_sphere *spheres;       ///< (num_bodies)
+    const scree_sphere *spheres;       ///< (num_bodies) of pairs of two spheres
     const scree_shape_view *shapes;    ///< of all bodies
     const int32_t *shape;              ///< (num_bodies)
     const scree_pose *pose;            ///< (num_bodies)
@@ -43,9 +39,9 @@ typedef struct scree_sphere_pairs_args
     int32_t *num_contacts;             ///< (num_pairs) of each pair; written by the first pass, read by the second
     scree_contact_list list;           ///< second pass: first_of_pair read, geometry written
 
-    // spheres on meshes
+    // spheres and clumps on meshes
     scree_sphere_contact *found; ///< (num, max_found)
-    uint8_t *is_inside;          ///< (num) out: the centre is inside the solid
+    uint8_t *is_inside;          ///< (num) out: a centre is inside the solid
     int32_t max_found;
 } scree_sphere_pairs_args;
 
@@ -53,6 +49,8 @@ typedef scree_sphere_pairs_args scree_sphere_sphere_count_args;
 typedef scree_sphere_pairs_args scree_sphere_sphere_write_args;
 typedef scree_sphere_pairs_args scree_sphere_mesh_count_args;
 typedef scree_sphere_pairs_args scree_sphere_mesh_write_args;
+typedef scree_sphere_pairs_args scree_clump_clump_count_args;
+typedef scree_sphere_pairs_args scree_clump_clump_write_args;
 
 // The address of a part of the arguments is never taken: compilers would then copy all of them for each pair.
 
@@ -97,40 +95,126 @@ SCREE_FN void scree_sphere_sphere_write_at(scree_sphere_sphere_write_args a, int
     scree_write_point(a.list, c);
 }
 
+/// Sphere k of a posed body, its centre measured from the body's position along the world axes; `rotation` is that of
+/// the body.
+SCREE_FN scree_sphere scree_turned_sphere(const scree_shape_view *shape, const scree_mat3 *rotation, scree_real scale,
+                                          int32_t k)
+{
+    scree_sphere sphere = scree_shape_sphere(shape, k);
+    if (shape->spheres) sphere.centre = scree_vec3_scale(scree_mat3_apply(*rotation, sphere.centre), scale);
+    sphere.radius = sphere.radius * scale;
+    return sphere;
+}
+
 SCREE_FN void scree_sphere_mesh_count_at(scree_sphere_mesh_count_args a, int64_t b)
 {
     const scree_candidate_pair pair = a.pairs[a.batch[b]];
-    const bool is_first = a.spheres[pair.i].radius > 0; // is the sphere
-    const scree_sphere sphere = a.spheres[is_first ? pair.i : pair.j];
-    const int32_t mesh = is_first ? pair.j : pair.i;
-    bool is_inside;
-    a.num_contacts[a.batch[b]] = scree_sphere_mesh_contacts(
-        a.shapes + a.shape[mesh], scree_sphere_to_mesh(sphere.centre, sphere.radius, a.pose + mesh),
-        a.found + b * a.max_found, a.max_found, &is_inside);
-    a.is_inside[b] = is_inside ? 1 : 0;
+    const bool is_first = a.shapes[a.shape[pair.i]].kind != SCREE_KIND_MESH; // is the sphere or clump
+    const int32_t body = is_first ? pair.i : pair.j, mesh = is_first ? pair.j : pair.i;
+    const scree_shape_view *shape = a.shapes + a.shape[body];
+    const scree_pose pose = a.pose[body];
+    const scree_mat3 rotation = scree_mat3_from_quat(pose.orientation);
+    scree_sphere_contact *found = a.found + b * a.max_found;
+    int32_t num = 0;
+    bool is_any_inside = false;
+    for (int32_t k = 0; k < shape->num_spheres; ++k)
+    {
+        const scree_sphere sphere = scree_turned_sphere(shape, &rotation, pose.scale, k);
+        const int32_t first = num < a.max_found ? num : a.max_found;
+        bool is_inside;
+        num += scree_sphere_mesh_contacts(
+            a.shapes + a.shape[mesh],
+            scree_sphere_to_mesh(scree_vec3_add(pose.position, sphere.centre), sphere.radius, a.pose + mesh),
+            found + first, a.max_found - first, &is_inside);
+        is_any_inside |= is_inside;
+        for (int32_t f = first; f < num && f < a.max_found; ++f) found[f].sphere = k;
+    }
+    a.num_contacts[a.batch[b]] = num;
+    a.is_inside[b] = is_any_inside ? 1 : 0;
 }
 
 SCREE_FN void scree_sphere_mesh_write_at(scree_sphere_mesh_write_args a, int64_t b)
 {
     const int32_t p = a.batch[b];
+    if (a.num_contacts[p] == 0) return;
     const scree_candidate_pair pair = a.pairs[p];
-    const bool is_first = a.spheres[pair.i].radius > 0;
-    const scree_sphere sphere = a.spheres[is_first ? pair.i : pair.j];
+    const bool is_first = a.shapes[a.shape[pair.i]].kind != SCREE_KIND_MESH;
+    const int32_t body = is_first ? pair.i : pair.j;
+    const scree_pose pose = a.pose[body];
+    const scree_mat3 rotation = scree_mat3_from_quat(pose.orientation);
+    const scree_vec3 to_body = scree_vec3_sub(pose.position, a.pose[pair.i].position);
+    int32_t in_part = 0;
     for (int32_t k = 0; k < a.num_contacts[p]; ++k)
     {
         const int64_t c = a.list.first_of_pair[p] + k;
         const scree_sphere_contact contact = a.found[b * a.max_found + k];
-        const scree_vec3 arm = scree_vec3_scale(contact.normal, contact.indentation / 2 - sphere.radius);
-        const scree_vec3 to_sphere = scree_vec3_sub(sphere.centre, a.spheres[pair.i].centre);
-        const scree_vec3 normal = is_first ? contact.normal : scree_vec3_negate(contact.normal);
+        const scree_sphere sphere =
+            scree_turned_sphere(a.shapes + a.shape[body], &rotation, pose.scale, contact.sphere);
+        in_part = k > 0 && a.found[b * a.max_found + k - 1].sphere == contact.sphere ? in_part + 1 : 0;
+        const scree_vec3 arm =
+            scree_vec3_add(sphere.centre, scree_vec3_scale(contact.normal, contact.indentation / 2 - sphere.radius));
         a.list.bodies[c] = pair;
-        a.list.patch[c] = k;
+        a.list.patch[c] = (contact.sphere << SCREE_PATCH_BITS) + in_part;
         a.list.volume[c] = scree_sphere_contact_volume(sphere.radius, contact.indentation, contact.weight);
         a.list.indentation[c] = contact.indentation;
-        a.list.normal[c] = normal;
-        a.list.arm[c] = is_first ? arm : scree_vec3_add(to_sphere, arm);
+        a.list.normal[c] = is_first ? contact.normal : scree_vec3_negate(contact.normal);
+        a.list.arm[c] = is_first ? arm : scree_vec3_add(to_body, arm);
         scree_write_point(a.list, c);
     }
+}
+
+/// All pairs of spheres of the clumps of candidate pair p. Returns the number of contacts, which are only written on
+/// demand.
+SCREE_FN int32_t scree_clump_clump_contacts(scree_sphere_pairs_args a, int32_t p, bool is_written)
+{
+    const scree_candidate_pair pair = a.pairs[p];
+    const scree_shape_view *shape_i = a.shapes + a.shape[pair.i], *shape_j = a.shapes + a.shape[pair.j];
+    const scree_pose pose_i = a.pose[pair.i], pose_j = a.pose[pair.j];
+    const scree_mat3 rotation_i = scree_mat3_from_quat(pose_i.orientation);
+    const scree_mat3 rotation_j = scree_mat3_from_quat(pose_j.orientation);
+    const scree_vec3 between = scree_vec3_sub(pose_i.position, pose_j.position);
+    const scree_real reach = shape_j->bounding_radius * pose_j.scale;
+    int32_t num = 0;
+    for (int32_t k = 0; k < shape_i->num_spheres; ++k)
+    {
+        const scree_sphere mine = scree_turned_sphere(shape_i, &rotation_i, pose_i.scale, k);
+        const scree_vec3 from_j = scree_vec3_add(between, mine.centre);
+        if (scree_vec3_dot(from_j, from_j) > (reach + mine.radius) * (reach + mine.radius)) continue;
+        // the other's spheres stay as stored, only mine are turned
+        const scree_vec3 seen = scree_mat3_apply_transposed(rotation_j, from_j);
+        for (int32_t m = 0; m < shape_j->num_spheres; ++m)
+        {
+            const scree_sphere other = scree_shape_sphere(shape_j, m);
+            const scree_real radius = other.radius * pose_j.scale;
+            scree_sphere_contact contact;
+            if (!scree_sphere_sphere_contact(scree_vec3_add_scaled(seen, other.centre, -pose_j.scale),
+                                             mine.radius + radius, &contact))
+                continue;
+            const int64_t c = is_written ? a.list.first_of_pair[p] + num : 0;
+            ++num;
+            if (!is_written) continue;
+            const scree_vec3 normal = scree_mat3_apply(rotation_j, contact.normal);
+            a.list.bodies[c] = pair;
+            a.list.patch[c] = (k * shape_j->num_spheres + m) << SCREE_PATCH_BITS;
+            a.list.volume[c] =
+                scree_sphere_contact_volume(mine.radius * radius / (mine.radius + radius), contact.indentation, 1);
+            a.list.indentation[c] = contact.indentation;
+            a.list.normal[c] = normal;
+            a.list.arm[c] = scree_vec3_add_scaled(mine.centre, normal, contact.indentation / 2 - mine.radius);
+            scree_write_point(a.list, c);
+        }
+    }
+    return num;
+}
+
+SCREE_FN void scree_clump_clump_count_at(scree_clump_clump_count_args a, int64_t b)
+{
+    a.num_contacts[a.batch[b]] = scree_clump_clump_contacts(a, a.batch[b], false);
+}
+
+SCREE_FN void scree_clump_clump_write_at(scree_clump_clump_write_args a, int64_t b)
+{
+    if (a.num_contacts[a.batch[b]] > 0) scree_clump_clump_contacts(a, a.batch[b], true);
 }
 
 #endif

@@ -63,6 +63,8 @@ scree_status scree_update_contacts(scree_simulation *simulation)
     match.first_of_pair = simulation->contacts.first_of_pair;
     match.old_first_of_pair = b->is_old_list_of_same_pairs ? old.first_of_pair : NULL;
     match.old_bodies = old.bodies;
+    match.patch = simulation->contacts.patch;
+    match.old_patch = old.patch;
     match.arm = simulation->contacts.arm;
     match.old_arm = old.arm;
     match.num_old = old.num_contacts;

@@ -6,6 +6,7 @@
 #include "dynamics/start_check.h"
 #include "dynamics/step_buffers.h"
 #include "dynamics/time_step.h"
+#include "polyhedra/clump.h"
 #include "polyhedra/generate.h"
 #include "polyhedra/import.h"
 #include "polyhedra/simplify.h"
@@ -53,9 +54,10 @@ static scree_status check_names(const scree_scene *scene, scree_report *report)
     return is_complete && scree_report_num_faults(report) == before ? SCREE_OK : SCREE_INVALID_INPUT;
 }
 
-static bool is_true_sphere(const scree_shape_def *def)
+/// True spheres and clumps of them.
+static bool is_without_mesh(const scree_shape_def *def)
 {
-    return def->source == SCREE_SHAPE_SPHERE && def->triangles == 0;
+    return def->source == SCREE_SHAPE_CLUMP || (def->source == SCREE_SHAPE_SPHERE && def->triangles == 0);
 }
 
 /// Mesh of a shape definition, in its source frame, before it is shifted and repeated.
@@ -81,6 +83,8 @@ static scree_status make_one_mesh(scree_mesh *mesh, const scree_shape_def *def, 
         return status;
     case SCREE_SHAPE_TURNED:
         return scree_generate_turned(mesh, def->profile, (int32_t)def->num_profile, (int32_t)def->segments);
+    case SCREE_SHAPE_CLUMP:
+        return SCREE_INVALID_INPUT; // has no mesh
     case SCREE_SHAPE_FILE:
         break;
     }
@@ -116,18 +120,36 @@ static scree_status make_mesh(scree_mesh *mesh, const scree_shape_def *def, cons
     return status;
 }
 
-/// A true sphere needs no mesh, but it cannot be a wall.
-static scree_status make_sphere(scree_simulation *s, int32_t k, bool is_wall, scree_report *report)
+/// A true sphere or a clump needs no mesh, but it cannot be a wall.
+static scree_status make_spheres(scree_simulation *s, int32_t k, bool is_wall, scree_report *report)
 {
     const scree_shape_def *def = s->scene->shapes + k;
-    scree_shape_create_sphere(s->particle_shapes + k, 0.5 * def->size[0]);
+    const bool is_clump = def->source == SCREE_SHAPE_CLUMP;
+    if (is_wall)
+    {
+        scree_report_add(report,
+                         "shape \"%s\" is a %s, but a wall is made of it, and walls are meshes; %s give the wall a "
+                         "shape of its own",
+                         def->name, is_clump ? "clump" : "true sphere (triangles is 0)",
+                         is_clump ? "" : "set triangles of it, for instance 1280, or");
+        return SCREE_INVALID_INPUT;
+    }
+    scree_status status = SCREE_OK;
+    if (is_clump)
+    {
+        const scree_clump_fault fault = scree_clump_check(def->spheres, (int32_t)def->num_spheres);
+        if (fault.kind != SCREE_CLUMP_GOOD)
+        {
+            char text[256];
+            scree_clump_describe_fault(&fault, text, sizeof text);
+            scree_report_add(report, "spheres of shape \"%s\" %s", def->name, text);
+            return SCREE_INVALID_INPUT;
+        }
+        status = scree_shape_create_clump(s->particle_shapes + k, def->spheres, (int32_t)def->num_spheres);
+    }
+    else scree_shape_create_sphere(s->particle_shapes + k, 0.5 * def->size[0]);
     s->shape_views[k] = s->particle_shapes[k].view;
-    if (!is_wall) return SCREE_OK;
-    scree_report_add(report,
-                     "shape \"%s\" is a true sphere (triangles is 0), but a wall is made of it, and walls are meshes; "
-                     "set triangles of it, for instance 1280, or give the wall a shape of its own",
-                     def->name);
-    return SCREE_INVALID_INPUT;
+    return status;
 }
 
 /// Shapes in the frames they are used in: principal for particles, source for walls.
@@ -142,9 +164,9 @@ static scree_status make_shapes(scree_simulation *s, const char *folder, scree_r
             is_particle |= find_shape(scene, scene->particles[g].shape) == k;
         for (uint32_t w = 0; w < scene->num_walls; ++w) is_wall |= find_shape(scene, scene->walls[w].shape) == k;
         if (!is_particle && !is_wall) continue;
-        if (is_true_sphere(scene->shapes + k))
+        if (is_without_mesh(scene->shapes + k))
         {
-            const scree_status made = make_sphere(s, k, is_wall, report);
+            const scree_status made = make_spheres(s, k, is_wall, report);
             if (made != SCREE_OK) worst = made;
             continue;
         }

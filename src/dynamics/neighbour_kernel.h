@@ -16,7 +16,7 @@ typedef struct scree_boxes_args
     scree_real *radii;              ///< (num_particles) out, with skin
 } scree_boxes_args;
 
-/// Box of the vertices of particle i, or of the sphere that it is, and its bounding sphere, both with skin.
+/// Box of the vertices of particle i, or of the spheres that it is made of, and its bounding sphere, both with skin.
 SCREE_FN void scree_boxes_at(scree_boxes_args a, int64_t i)
 {
     const scree_shape_view *shape = a.shapes + a.shape[i];
@@ -28,6 +28,19 @@ SCREE_FN void scree_boxes_at(scree_boxes_args a, int64_t i)
         box = scree_box_empty();
         for (int32_t v = 0; v < shape->num_vertices; ++v)
             box = scree_box_with_point(box, scree_mat3_apply(rotation, shape->vertices[v]));
+    }
+    if (shape->kind == SCREE_KIND_CLUMP)
+    {
+        const scree_mat3 rotation = scree_mat3_from_quat(pose.orientation);
+        box = scree_box_empty();
+        for (int32_t k = 0; k < shape->num_spheres; ++k)
+        {
+            const scree_vec3 centre = scree_mat3_apply(rotation, shape->spheres[k].centre);
+            const scree_real r = shape->spheres[k].radius;
+            const scree_vec3 corner = scree_vec3_make(r, r, r);
+            box = scree_box_with_point(box, scree_vec3_sub(centre, corner));
+            box = scree_box_with_point(box, scree_vec3_add(centre, corner));
+        }
     }
 
     // a few roundings of the rotation, the scaling and the sums

@@ -48,18 +48,15 @@ static void print_stage(FILE *out, const char *stage, const char *why, size_t by
 /// How contacts are found, by the kinds of shapes that can meet. Returns the bytes of a pair that takes the most.
 static size_t print_narrow_phase(const scree_simulation *s, FILE *out)
 {
-    bool has_spheres = false, has_meshes = false;
-    for (int64_t i = 0; i < s->particles.num_particles; ++i)
-    {
-        const bool is_sphere = s->shape_views[s->particles.shape[i]].kind == SCREE_KIND_SPHERE;
-        has_spheres |= is_sphere;
-        has_meshes |= !is_sphere;
-    }
+    bool has[SCREE_NUM_SHAPE_KINDS] = {false};
+    for (int64_t i = 0; i < s->particles.num_particles; ++i) has[s->shape_views[s->particles.shape[i]].kind] = true;
+    const bool has_meshes = has[SCREE_KIND_MESH], has_clumps = has[SCREE_KIND_CLUMP];
+    const bool has_spheres = has[SCREE_KIND_SPHERE] || has_clumps;
     const char *stage = "narrow phase";
+    char text[96];
     size_t largest = 0;
     if (has_meshes)
     {
-        char text[96];
         snprintf(text, sizeof text, "polyhedra: exact overlap, %s scheme, a contact per %s",
                  s->scene->solver.overlap_scheme, s->scene->solver.separate_patches ? "patch" : "pair");
         print_stage(out, stage, text, bytes_mesh_pair, "pair");
@@ -68,12 +65,15 @@ static size_t print_narrow_phase(const scree_simulation *s, FILE *out)
     }
     if (has_spheres && (has_meshes || s->num_walls > 0))
     {
-        print_stage(out, stage, "spheres on meshes: faces, edges and vertices that are nearest", bytes_sphere_mesh_pair,
-                    "pair");
+        snprintf(text, sizeof text, "spheres%s on meshes: faces, edges and vertices that are nearest",
+                 has_clumps ? " and those of clumps" : "");
+        print_stage(out, stage, text, bytes_sphere_mesh_pair, "pair");
         stage = "";
         largest = largest > bytes_sphere_mesh_pair ? largest : bytes_sphere_mesh_pair;
     }
-    if (has_spheres) print_stage(out, stage, "spheres with each other: closed form", 0, "");
+    if (has[SCREE_KIND_SPHERE]) print_stage(out, stage, "spheres with each other: closed form", 0, "");
+    if (has_clumps)
+        print_stage(out, has[SCREE_KIND_SPHERE] ? "" : stage, "clumps: closed form of their spheres", 0, "");
     print_stage(out, "contacts", "sorted by pair, with those of the step before for the history", bytes_contact,
                 "contact");
     return largest;

@@ -32,9 +32,13 @@ static int64_t measure_heights(const scree_simulation *s, scree_repose *repose)
         if ((double)s->particles.position[i].z > def->top) continue;
         const scree_shape_view *shape = s->shape_views + s->particles.shape[i];
         const scree_mat3 rotation = scree_mat3_from_quat(s->particles.orientation[i]);
-        const scree_vec3 top = scree_vec3_make(0, 0, shape->bounding_radius);
-        if (shape->kind == SCREE_KIND_SPHERE)
+        for (int32_t k = 0; k < shape->num_spheres; ++k)
+        {
+            const scree_sphere sphere = scree_shape_sphere(shape, k);
+            const scree_vec3 top =
+                scree_vec3_add(scree_mat3_apply(rotation, sphere.centre), scree_vec3_make(0, 0, sphere.radius));
             raise_bin(def, scree_vec3_add_scaled(s->particles.position[i], top, s->particles.scale[i]), repose);
+        }
         for (int32_t v = 0; v < shape->num_vertices; ++v)
             raise_bin(def,
                       scree_vec3_add_scaled(s->particles.position[i], scree_mat3_apply(rotation, shape->vertices[v]),

@@ -8,6 +8,16 @@
 /// it collapsed.
 #define SPHERE_CONTACT_RADIUS 0.283
 
+/// Radius that a contact to expect goes by: of a clump that of its largest sphere. It may stand on several of them,
+/// whose stiffnesses add up.
+static double touching_radius(const scree_shape *shape)
+{
+    if (shape->view.kind != SCREE_KIND_CLUMP) return shape->properties.bounding_radius;
+    double largest = 0;
+    for (int32_t k = 0; k < shape->view.num_spheres; ++k) largest = fmax(largest, (double)shape->spheres[k].radius);
+    return largest;
+}
+
 double scree_time_step_critical(const scree_simulation *simulation)
 {
     const scree_particles *p = &simulation->particles;
@@ -15,8 +25,8 @@ double scree_time_step_critical(const scree_simulation *simulation)
     for (int64_t i = 0; i < p->num_particles; ++i)
     {
         const scree_shape *shape = simulation->particle_shapes + p->shape[i];
-        const double share = shape->view.kind == SCREE_KIND_SPHERE ? SPHERE_CONTACT_RADIUS : 0.5;
-        const double radius = shape->properties.bounding_radius * (double)p->scale[i];
+        const double share = shape->view.kind == SCREE_KIND_MESH ? 0.5 : SPHERE_CONTACT_RADIUS;
+        const double radius = touching_radius(shape) * (double)p->scale[i];
         double stiffness = 0;
         for (int32_t m = 0; m < simulation->num_materials; ++m)
         {
@@ -24,6 +34,7 @@ double scree_time_step_critical(const scree_simulation *simulation)
             const scree_force_law *law = simulation->laws + p->material[i] * simulation->num_materials + m;
             stiffness = fmax(stiffness, scree_force_law_largest_stiffness(law, share * radius, radius));
         }
+        if (shape->view.kind == SCREE_KIND_CLUMP) stiffness *= shape->num_supports;
         smallest_squared = fmin(smallest_squared, (double)p->mass[i] / (3.5 * stiffness));
     }
     return sqrt(smallest_squared);

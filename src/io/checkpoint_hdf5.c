@@ -47,6 +47,8 @@ static uint64_t hash_numbers(uint64_t hash, const double *values, int num)
 static uint64_t hash_shape(uint64_t hash, const scree_shape_view *shape)
 {
     if (shape->kind == SCREE_KIND_SPHERE) return hash_number(hash, (double)shape->bounding_radius);
+    if (shape->kind == SCREE_KIND_CLUMP)
+        return scree_hash_bytes(hash, shape->spheres, (size_t)shape->num_spheres * sizeof *shape->spheres);
     hash = scree_hash_bytes(hash, shape->vertices, (size_t)shape->num_vertices * sizeof *shape->vertices);
     return scree_hash_bytes(hash, shape->triangles, (size_t)shape->num_triangles * sizeof *shape->triangles);
 }

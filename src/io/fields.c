@@ -71,7 +71,7 @@ enum
 
 static const scree_field contact_fields[] = {
     CONTACT(bodies, "1", "ids i < j; j may be a wall: number of particles + index of the wall", SCREE_FIELD_INT32, 2),
-    CONTACT(patch, "1", "index of the contact within its pair", SCREE_FIELD_INT32, 1),
+    CONTACT(patch, "1", "of its part of the pair, in units of 2^15, plus index within that", SCREE_FIELD_INT32, 1),
     CONTACT(volume, "m^3", "overlap volume", SCREE_FIELD_REAL, 1),
     CONTACT(indentation, "m", "extent of the overlap along the normal", SCREE_FIELD_REAL, 1),
     CONTACT(radius, "m", "largest distance of a point of the overlap from the contact point, across the normal",

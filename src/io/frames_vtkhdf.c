@@ -1,7 +1,7 @@
 /// \file frames_vtkhdf.c
 /// Pictures of the state for ParaView and VTK: surfaces of the polyhedra (frames.vtkhdf) and of the walls
-/// (walls.vtkhdf), true spheres as points with a radius (spheres.vtkhdf), contacts as lines from centre to centre
-/// through the contact point (contacts.vtkhdf). There is no file of what a scene has none of.
+/// (walls.vtkhdf), true spheres and those of clumps as points with a radius (spheres.vtkhdf), contacts as lines from
+/// centre to centre through the contact point (contacts.vtkhdf). There is no file of what a scene has none of.
 ///
 /// Particles keep their connectivity, so it is written once and each frame adds points alone. Walls are written anew
 /// only in frames where one of them has moved or gone.
@@ -42,7 +42,8 @@ struct scree_frames
     scree_vtkhdf_file *particles, *spheres, *walls, *contacts; ///< NULL if there are none, contacts apart
     int64_t *first_vertex;                                     ///< (num_particles + 1)
     int64_t num_spheres;
-    int32_t *sphere_ids;             ///< (num_spheres) ids of the particles that are spheres
+    int32_t *sphere_ids;             ///< (num_spheres) ids of the particles that are, or have, spheres
+    int32_t *sphere_parts;           ///< (num_spheres) which sphere of the particle
     scree_vtkhdf_step particle_step; ///< that all frames share, but for time and points
     scree_vtkhdf_step sphere_step;   ///< likewise
     scree_vtkhdf_step wall_step;     ///< of the walls as they were last written
@@ -206,6 +207,18 @@ static scree_status write_particles(scree_frames *frames, const scree_simulation
 
 // ---- spheres
 
+/// Sphere k of particle i in the world.
+static scree_sphere place_sphere(const scree_simulation *simulation, int64_t i, int32_t k)
+{
+    const scree_particles *particles = &simulation->particles;
+    const scree_mat3 rotation = scree_mat3_from_quat(particles->orientation[i]);
+    scree_sphere sphere = scree_shape_sphere(particle_shape(simulation, i), k);
+    sphere.centre =
+        scree_vec3_add_scaled(particles->position[i], scree_mat3_apply(rotation, sphere.centre), particles->scale[i]);
+    sphere.radius = sphere.radius * particles->scale[i];
+    return sphere;
+}
+
 /// One item of a column for the spheres first .. first + num - 1, to the block.
 static void fill_sphere_column(const scree_frames *frames, const scree_simulation *simulation, int column,
                                scree_vtkhdf_rows rows)
@@ -217,13 +230,13 @@ static void fill_sphere_column(const scree_frames *frames, const scree_simulatio
     {
         const int32_t i = frames->sphere_ids[rows.first + k];
         const bool is_point = column == SCREE_VTKHDF_POINT_COORDINATES;
-        const scree_vec3 v = is_point ? particles->position[i] : particles->velocity[i];
+        const scree_sphere sphere = place_sphere(simulation, i, frames->sphere_parts[rows.first + k]);
+        const scree_vec3 v = is_point ? sphere.centre : particles->velocity[i];
         if (column == SPHERE_ID) ids[k] = i;
         else if (column == SPHERE_GROUP) ids[k] = particles->group[i];
         else if (column == SCREE_VTKHDF_CONNECTIVITY || column == SCREE_VTKHDF_OFFSETS)
             ids[k] = (int32_t)(rows.first + k);
-        else if (column == SPHERE_RADIUS)
-            numbers[k] = (float)(particle_shape(simulation, i)->bounding_radius * particles->scale[i]);
+        else if (column == SPHERE_RADIUS) numbers[k] = (float)sphere.radius;
         else if (column == SPHERE_SPEED) numbers[k] = (float)scree_vec3_length(v);
         else
         {
@@ -497,16 +510,23 @@ static scree_status measure(scree_frames *frames, const scree_simulation *simula
     *num_triangles = 0;
     frames->first_vertex = malloc((size_t)(num_particles + 1) * sizeof *frames->first_vertex);
     frames->written_walls = malloc((size_t)(simulation->num_walls + 1) * sizeof *frames->written_walls);
-    frames->sphere_ids = malloc((size_t)(num_particles + 1) * sizeof *frames->sphere_ids);
-    if (frames->first_vertex == NULL || frames->written_walls == NULL || frames->sphere_ids == NULL)
+    int64_t num_spheres = 0;
+    for (int64_t i = 0; i < num_particles; ++i) num_spheres += particle_shape(simulation, i)->num_spheres;
+    frames->sphere_ids = malloc((size_t)(num_spheres + 1) * sizeof *frames->sphere_ids);
+    frames->sphere_parts = malloc((size_t)(num_spheres + 1) * sizeof *frames->sphere_parts);
+    if (frames->first_vertex == NULL || frames->written_walls == NULL || frames->sphere_ids == NULL ||
+        frames->sphere_parts == NULL)
         return SCREE_OUT_OF_MEMORY;
     frames->first_vertex[0] = 0;
     for (int64_t i = 0; i < num_particles; ++i)
     {
         frames->first_vertex[i + 1] = frames->first_vertex[i] + particle_shape(simulation, i)->num_vertices;
         *num_triangles += particle_shape(simulation, i)->num_triangles;
-        if (particle_shape(simulation, i)->kind == SCREE_KIND_SPHERE)
-            frames->sphere_ids[frames->num_spheres++] = (int32_t)i;
+        for (int32_t k = 0; k < particle_shape(simulation, i)->num_spheres; ++k)
+        {
+            frames->sphere_ids[frames->num_spheres] = (int32_t)i;
+            frames->sphere_parts[frames->num_spheres++] = k;
+        }
     }
     for (int32_t k = 0; k < 2 * simulation->num_shapes; ++k)
     {
@@ -516,7 +536,11 @@ static scree_status measure(scree_frames *frames, const scree_simulation *simula
     }
     frames->block = malloc((size_t)(largest + 1) * 3 * sizeof(float));
     if (frames->block == NULL) return SCREE_OUT_OF_MEMORY;
-    if (3 * *num_triangles <= INT32_MAX && frames->first_vertex[num_particles] <= INT32_MAX) return SCREE_OK;
+    if (num_spheres > INT32_MAX)
+        scree_report_add(report, "%lld spheres are more than spheres.vtkhdf can number; set output.frames to 0",
+                         (long long)num_spheres);
+    else if (3 * *num_triangles <= INT32_MAX && frames->first_vertex[num_particles] <= INT32_MAX) return SCREE_OK;
+    if (num_spheres > INT32_MAX) return SCREE_TOO_MANY;
     scree_report_add(report, "%lld triangles are more than frames.vtkhdf can number; set output.frames to 0",
                      (long long)*num_triangles);
     return SCREE_TOO_MANY;
@@ -650,6 +674,7 @@ scree_status scree_frames_close(scree_frames *frames, scree_report *report)
     }
     free(frames->first_vertex);
     free(frames->sphere_ids);
+    free(frames->sphere_parts);
     free(frames->written_walls);
     free(frames->block);
     free(frames);

@@ -1,6 +1,7 @@
 /// \file scene_bodies.c
 /// Rules of shapes, groups of particles and walls.
 #include "io/scene_rules.h"
+#include "polyhedra/clump.h"
 
 #include <math.h>
 #include <string.h>
@@ -78,6 +79,34 @@ static void check_sphere(scree_scene_reader *reader, const scree_yaml_node *shap
     warn_unused_key(reader, shape, "offset", of, "a true sphere is centred");
 }
 
+/// A clump: its spheres hang together, and it is no mesh that could be shifted and repeated.
+static void check_clump(scree_scene_reader *reader, const scree_yaml_node *shape, const char *of)
+{
+    scree_clump_sphere spheres[SCREE_CLUMP_MAX_SPHERES];
+    const scree_yaml_node *list = scree_yaml_find(shape, "spheres");
+    const int64_t num = scree_rules_num_items(list);
+    bool is_known = list != NULL && !list->is_refused && num <= SCREE_CLUMP_MAX_SPHERES;
+    for (int64_t k = 0; k < num && is_known; ++k)
+        is_known = scree_rules_numbers(list->items[k], "position", spheres[k].position, 3) &&
+                   scree_rules_number(list->items[k], "radius", &spheres[k].radius);
+    if (is_known)
+    {
+        const scree_clump_fault fault = scree_clump_check(spheres, (int32_t)num);
+        char text[256];
+        scree_clump_describe_fault(&fault, text, sizeof text);
+        const bool has_place = num > 0 && fault.kind != SCREE_CLUMP_TOO_MANY;
+        if (fault.kind != SCREE_CLUMP_GOOD)
+            scree_scene_fault(reader, has_place ? list->items[fault.first] : scree_rules_place(shape, "spheres"),
+                              "spheres of %s %s", of, text);
+    }
+    double copies;
+    if (scree_rules_number(shape, "copies", &copies) && copies > 1)
+        scree_scene_fault(reader, scree_rules_place(shape, "copies"),
+                          "copies of %s is %g, but a clump cannot be repeated; list all its spheres", of, copies);
+    warn_unused_key(reader, shape, "offset", of, "a clump is centred");
+    warn_unused_key(reader, shape, "size", of, "the spheres have the lengths");
+}
+
 static void check_shape(scree_scene_reader *reader, const scree_yaml_node *shape, const char *of)
 {
     const char *source = scree_rules_text(shape, "source"), *file = scree_rules_text(shape, "file");
@@ -86,9 +115,11 @@ static void check_shape(scree_scene_reader *reader, const scree_yaml_node *shape
     const bool is_rock = strcmp(source, "rock") == 0, is_sphere = strcmp(source, "sphere") == 0;
     if (is_file && file != NULL && file[0] == '\0')
         scree_scene_fault(reader, shape, "file of %s is missing; it must be the path of a mesh", of);
-    const bool is_turned = strcmp(source, "turned") == 0;
-    if (!is_file && !is_turned) check_shape_size(reader, shape, of, is_box);
+    const bool is_turned = strcmp(source, "turned") == 0, is_clump = strcmp(source, "clump") == 0;
+    if (!is_file && !is_turned && !is_clump) check_shape_size(reader, shape, of, is_box);
     if (is_turned) check_profile(reader, shape, of);
+    if (is_clump) check_clump(reader, shape, of);
+    else warn_unused_key(reader, shape, "spheres", of, "the source is not clump");
 
     double triangles;
     const bool has_triangles = scree_rules_number(shape, "triangles", &triangles);
@@ -275,13 +306,19 @@ static void check_motion(scree_scene_reader *reader, const scree_yaml_node *wall
     for (int k = 0; !is_rotating && k < 3; ++k) warn_unused_key(reader, motion, of_rotation[k], of, why);
 }
 
-/// A true sphere cannot be a wall: walls are meshes.
+/// A true sphere or a clump cannot be a wall: walls are meshes.
 static void check_wall_shape(scree_scene_reader *reader, const scree_yaml_node *wall, int64_t shape, const char *of)
 {
     if (shape < 0) return;
     const scree_yaml_node *node = scree_yaml_find(reader->root, "shapes")->items[shape];
     const char *source = scree_rules_text(node, "source"), *name = scree_rules_text(node, "name");
     double triangles;
+    if (source != NULL && strcmp(source, "clump") == 0)
+        scree_scene_fault(
+            reader, scree_rules_place(wall, "shape"),
+            "shape of %s is \"%.255s\", a clump, but walls are meshes; give it a shape of its own, a box or "
+            "a file for instance",
+            of, name);
     if (source == NULL || strcmp(source, "sphere") != 0 || !scree_rules_number(node, "triangles", &triangles) ||
         triangles > 0)
         return;

@@ -3,6 +3,7 @@
 #include "io/scene_schema.h"
 
 #include "forces/force_parameters.h"
+#include "polyhedra/clump.h"
 
 #include <string.h>
 
@@ -141,7 +142,8 @@ static const cyaml_strval_t shape_sources[] = {{"file", SCREE_SHAPE_FILE},
                                                {"schoenhardt", SCREE_SHAPE_SCHOENHARDT},
                                                {"sphere", SCREE_SHAPE_SPHERE},
                                                {"rock", SCREE_SHAPE_ROCK},
-                                               {"turned", SCREE_SHAPE_TURNED}};
+                                               {"turned", SCREE_SHAPE_TURNED},
+                                               {"clump", SCREE_SHAPE_CLUMP}};
 static const cyaml_schema_field_t profile_fields[] = {NUMBER(scree_profile_point, radius),
                                                       NUMBER(scree_profile_point, height), CYAML_FIELD_END};
 static const scree_scene_key profile_keys[] = {
@@ -156,6 +158,20 @@ static const scree_scene_section profile_section = {
 static const cyaml_schema_value_t profile_value = {
     CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, scree_profile_point, profile_fields)};
 
+static const cyaml_schema_field_t clump_sphere_fields[] = {NUMBERS(scree_clump_sphere, position, 3),
+                                                           NUMBER(scree_clump_sphere, radius), CYAML_FIELD_END};
+static const scree_scene_key clump_sphere_keys[] = {
+    {.name = "position", .unit = "m", .min = -MAX_POSITION, .max = MAX_POSITION, .meaning = "of its centre"},
+    {.name = "radius", .unit = "m", .min = 1e-12, .max = MAX_POSITION, .meaning = "of the sphere"},
+};
+static const scree_scene_section clump_sphere_section = {
+    "shapes[].spheres[]",
+    "Spheres of a clump, a rigid body. Mass and inertia are those of their union, in which each part of space counts "
+    "once; each sphere makes contacts of its own. They must hang together, and none may be wholly inside another.",
+    clump_sphere_fields, clump_sphere_keys, COUNT(clump_sphere_keys)};
+static const cyaml_schema_value_t clump_sphere_value = {
+    CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, scree_clump_sphere, clump_sphere_fields)};
+
 static const cyaml_schema_field_t shape_fields[] = {TEXT(scree_shape_def, name),
                                                     WORD(scree_shape_def, source, shape_sources),
                                                     TEXT(scree_shape_def, file),
@@ -164,6 +180,7 @@ static const cyaml_schema_field_t shape_fields[] = {TEXT(scree_shape_def, name),
                                                     INTEGER(scree_shape_def, seed),
                                                     LIST(scree_shape_def, profile, &profile_value),
                                                     INTEGER(scree_shape_def, segments),
+                                                    LIST(scree_shape_def, spheres, &clump_sphere_value),
                                                     NUMBERS(scree_shape_def, offset, 3),
                                                     INTEGER(scree_shape_def, copies),
                                                     CYAML_FIELD_END};
@@ -206,6 +223,11 @@ static const scree_scene_key shape_keys[] = {
      .min = 3,
      .max = 4096,
      .meaning = "of turned: sides of the cross-sections, which have the area of the circle"},
+    {.name = "spheres",
+     .default_text = "[]",
+     .section = &clump_sphere_section,
+     .max = SCREE_CLUMP_MAX_SPHERES,
+     .meaning = "of clump: from 1 on. A clump has no mesh and cannot be a wall"},
     {.name = "offset",
      .unit = "m",
      .default_text = "[0, 0, 0]",
@@ -221,7 +243,8 @@ static const scree_scene_key shape_keys[] = {
                 "They must not touch each other"},
 };
 static const scree_scene_section shape_section = {
-    "shapes[]", "Closed triangle meshes and true spheres, shared by all particles and walls that name them.",
+    "shapes[]",
+    "Closed triangle meshes, true spheres and clumps of them, shared by all particles and walls that name them.",
     shape_fields, shape_keys, COUNT(shape_keys)};
 
 // ---------------------------------------------------------------------------------------------------------- particles

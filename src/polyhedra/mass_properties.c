@@ -140,7 +140,7 @@ static void arrange_axes(double a[3][3], double axes[3][3], double principal[3],
     }
 }
 
-static void find_principal(scree_mass_properties *properties)
+void scree_mass_properties_find_principal(scree_mass_properties *properties)
 {
     double a[3][3];
     double axes[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -201,5 +201,5 @@ void scree_mass_properties_compute(const scree_mesh *mesh, scree_mass_properties
         const double radius = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
         if (radius > properties->bounding_radius) properties->bounding_radius = radius;
     }
-    find_principal(properties);
+    scree_mass_properties_find_principal(properties);
 }

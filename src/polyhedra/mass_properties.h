@@ -19,5 +19,7 @@ typedef struct scree_mass_properties
 } scree_mass_properties;
 
 void scree_mass_properties_compute(const scree_mesh *mesh, scree_mass_properties *properties);
+/// Principal moments and axes from the inertia.
+void scree_mass_properties_find_principal(scree_mass_properties *properties);
 
 #endif

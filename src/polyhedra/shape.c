@@ -200,6 +200,7 @@ void scree_shape_create_sphere(scree_shape *shape, double radius)
     shape->frame_orientation[0] = 1.0;
     shape->middle_size = 2.0 * (double)r;
     shape->view.kind = SCREE_KIND_SPHERE;
+    shape->view.num_spheres = 1;
     shape->view.is_convex = true;
     shape->view.bounding_radius = r;
     shape->view.box.lower = scree_vec3_make(-r, -r, -r);
@@ -215,5 +216,6 @@ void scree_shape_destroy(scree_shape *shape)
     scree_wide_tree_destroy(&shape->wide_tree);
     free(shape->support_map);
     free(shape->flat_faces);
+    free(shape->spheres);
     *shape = (scree_shape){0};
 }

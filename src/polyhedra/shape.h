@@ -1,6 +1,6 @@
 /// \file shape.h
-/// What a body's shape is to the step: a mesh in the body frame with the tree over its triangles, or a sphere; and its
-/// measures.
+/// What a body's shape is to the step: a mesh in the body frame with the tree over its triangles, a sphere, or a clump
+/// of spheres; and its measures.
 #ifndef SCREE_SHAPE_INTERNAL_H
 #define SCREE_SHAPE_INTERNAL_H
 
@@ -17,8 +17,17 @@
 typedef enum scree_shape_kind
 {
     SCREE_KIND_MESH,
-    SCREE_KIND_SPHERE ///< of bounding_radius about the origin; no vertices, triangles or tree
+    SCREE_KIND_SPHERE, ///< of bounding_radius about the origin; no vertices, triangles or tree
+    SCREE_KIND_CLUMP,  ///< rigid union of several spheres; likewise
+    SCREE_NUM_SHAPE_KINDS
 } scree_shape_kind;
+
+/// A sphere of a clump in the body frame, or any sphere in the world.
+typedef struct scree_sphere
+{
+    scree_vec3 centre; ///< [m]
+    scree_real radius; ///< [m]
+} scree_sphere;
 
 /// Geometry of one shape as kernels see it: borrowed pointers, body frame, unscaled.
 typedef struct scree_shape_view
@@ -35,8 +44,10 @@ typedef struct scree_shape_view
     int32_t num_vertices;
     int32_t num_triangles;
     bool is_convex;
-    scree_real bounding_radius; ///< about the origin of the body frame
-    scree_box box;              ///< of the vertices, or of the sphere; body frame
+    scree_real bounding_radius;  ///< about the origin of the body frame
+    scree_box box;               ///< of the vertices, or of the spheres; body frame
+    const scree_sphere *spheres; ///< (num_spheres) of a clump, body frame; NULL otherwise
+    int32_t num_spheres;         ///< 1: a sphere, which needs no list
 } scree_shape_view;
 
 /// Owns its mesh and tree; shared by all bodies of this shape. Start from {0}.
@@ -48,11 +59,13 @@ typedef struct scree_shape
     scree_wide_tree wide_tree;
     float *support_map;
     int32_t *flat_faces;
-    scree_mass_properties properties; ///< of the mesh as stored, or of the sphere; in the body frame
+    scree_sphere *spheres;            ///< of a clump
+    scree_mass_properties properties; ///< of the mesh as stored, or of the union of the spheres; in the body frame
     scree_shape_view view;
     double frame_position[3];    ///< origin of the body frame in the frame of the source mesh
     double frame_orientation[4]; ///< body frame to source frame, (w, x, y, z)
     double middle_size;          ///< middle one of the three extents of view.box
+    int32_t num_supports;        ///< most spheres of a clump that a plane touches at once, see scree_clump_num_supports
 } scree_shape;
 
 /// Which frame the body gets.
@@ -67,5 +80,15 @@ scree_status scree_shape_create(scree_shape *shape, const scree_mesh *mesh, scre
 /// A true sphere about the origin. radius > 0 [m].
 void scree_shape_create_sphere(scree_shape *shape, double radius);
 void scree_shape_destroy(scree_shape *shape);
+
+/// Sphere k of a sphere or clump, body frame, unscaled.
+SCREE_FN scree_sphere scree_shape_sphere(const scree_shape_view *shape, int32_t k)
+{
+    if (shape->spheres) return shape->spheres[k];
+    scree_sphere sphere;
+    sphere.centre = scree_vec3_zero();
+    sphere.radius = shape->bounding_radius;
+    return sphere;
+}
 
 #endif

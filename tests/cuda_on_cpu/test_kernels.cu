@@ -38,6 +38,8 @@ SCREE_DECLARE_LAUNCH_CUDA(scree_sphere_sphere_count)
 SCREE_DECLARE_LAUNCH_CUDA(scree_sphere_sphere_write)
 SCREE_DECLARE_LAUNCH_CUDA(scree_sphere_mesh_count)
 SCREE_DECLARE_LAUNCH_CUDA(scree_sphere_mesh_write)
+SCREE_DECLARE_LAUNCH_CUDA(scree_clump_clump_count)
+SCREE_DECLARE_LAUNCH_CUDA(scree_clump_clump_write)
 SCREE_DECLARE_LAUNCH_CUDA(scree_history_match)
 SCREE_DECLARE_LAUNCH_CUDA(scree_contact_force)
 SCREE_DECLARE_LAUNCH_CUDA(scree_gather)
@@ -60,6 +62,8 @@ static const char scene_text[] =
     "shapes:\n"
     "  - {name: rock, source: rock, triangles: 40, seed: 3}\n"
     "  - {name: ball, source: sphere, size: [0.016, 0, 0]}\n"
+    "  - {name: trio, source: clump, spheres: [{position: [0, 0, 0], radius: 0.007},\n"
+    "     {position: [0.006, 0, 0], radius: 0.006}, {position: [0, 0.007, 0], radius: 0.005}]}\n"
     "  - {name: schoenhardt, source: schoenhardt, size: [0.02, 0, 0]}\n"
     "  - {name: floor, source: box, size: [0.3, 0.3, 0.02]}\n"
     "particles:\n"
@@ -70,6 +74,8 @@ static const char scene_text[] =
     "     region: {min: [-0.05, -0.05, 0.24], max: [0.05, 0.05, 0.4]}}\n"
     "  - {name: balls, shape: ball, material: stone, count: 40, seed: 4, velocity: [0, 0, -8],\n"
     "     region: {min: [-0.05, -0.05, 0.4], max: [0.05, 0.05, 0.55]}}\n"
+    "  - {name: trios, shape: trio, material: stone, count: 60, seed: 5, velocity: [0, 0, -9],\n"
+    "     region: {min: [-0.05, -0.05, 0.55], max: [0.05, 0.05, 0.75]}}\n"
     "walls:\n"
     "  - {name: floor, shape: floor, material: steel, position: [0, 0, -0.01],\n"
     "     motion: {kind: translate, velocity: [0, 0, 0.2], start: 0.0, end: 0.02}}\n"
@@ -113,7 +119,8 @@ static const scree_shape_view *shapes_on(side &where)
     std::vector<scree_shape_view> views(s->shape_views, s->shape_views + 2 * s->num_shapes);
     for (scree_shape_view &view : views)
     {
-        if (view.kind == SCREE_KIND_SPHERE) continue;
+        if (view.kind == SCREE_KIND_CLUMP) view.spheres = where.copy(view.spheres, view.num_spheres);
+        if (view.kind != SCREE_KIND_MESH) continue;
         view.vertices = where.copy(view.vertices, view.num_vertices);
         view.triangles = where.copy(view.triangles, view.num_triangles);
         view.neighbours = where.copy(view.neighbours, 3 * (int64_t)view.num_triangles);
@@ -387,12 +394,14 @@ static void test_pairs()
 
 // ---- contacts
 
-/// Number of spheres in candidate pair p.
+/// 0: two meshes, 1: a mesh with a sphere or clump, 2: two spheres, 3: two clumps or a clump and a sphere.
 static int kind_of(int64_t p)
 {
     const scree_candidate_pair pair = s->broad_phase.pairs[p];
-    return (s->shape_views[b->shape[pair.i]].kind == SCREE_KIND_SPHERE) +
-           (s->shape_views[b->shape[pair.j]].kind == SCREE_KIND_SPHERE);
+    const scree_shape_kind i = s->shape_views[b->shape[pair.i]].kind, j = s->shape_views[b->shape[pair.j]].kind;
+    const int num_meshes = (i == SCREE_KIND_MESH) + (j == SCREE_KIND_MESH);
+    if (num_meshes > 0) return 2 - num_meshes;
+    return i == SCREE_KIND_SPHERE && j == SCREE_KIND_SPHERE ? 2 : 3;
 }
 
 /// A workspace of the host whose arrays, whatever they are, lie where they are needed; zeroed, as new ones are.
@@ -454,7 +463,7 @@ static void find_overlaps_on(side &where)
 
 static void test_overlaps() { check_two_sides(find_overlaps_on); }
 
-/// Both passes over the pairs of two spheres, or of a sphere and a mesh.
+/// Both passes over the pairs of two spheres, of a sphere or clump and a mesh, or of two clumps.
 static void find_spheres_on(side &where, int kind)
 {
     const int64_t num_pairs = s->broad_phase.num_pairs;
@@ -478,6 +487,7 @@ static void find_spheres_on(side &where, int kind)
     args.found = where.make<scree_sphere_contact>(num * args.max_found);
     args.is_inside = where.make<uint8_t>(num);
     if (kind == 2) LAUNCH_ON(where, scree_sphere_sphere_count, args, num);
+    else if (kind == 3) LAUNCH_ON(where, scree_clump_clump_count, args, num);
     else LAUNCH_ON(where, scree_sphere_mesh_count, args, num);
     where.keep(args.num_contacts, num_pairs);
     if (kind == 1) where.keep(args.is_inside, num);
@@ -498,6 +508,7 @@ static void find_spheres_on(side &where, int kind)
     args.list.torque_vector = where.make<scree_vec3>(n);
     args.list.arm = where.make<scree_vec3>(n);
     if (kind == 2) LAUNCH_ON(where, scree_sphere_sphere_write, args, num);
+    else if (kind == 3) LAUNCH_ON(where, scree_clump_clump_write, args, num);
     else LAUNCH_ON(where, scree_sphere_mesh_write, args, num);
     where.keep(args.list.bodies, n);
     where.keep(args.list.patch, n);
@@ -514,6 +525,7 @@ static void test_spheres()
 {
     check_two_sides([](side &where) { find_spheres_on(where, 1); });
     check_two_sides([](side &where) { find_spheres_on(where, 2); });
+    check_two_sides([](side &where) { find_spheres_on(where, 3); });
 }
 
 static void match_history_on(side &where, bool has_same_pairs)
@@ -526,6 +538,8 @@ static void match_history_on(side &where, bool has_same_pairs)
     args.first_of_pair = contacts.first_of_pair;
     args.old_first_of_pair = has_same_pairs ? old.first_of_pair : nullptr;
     args.old_bodies = old.bodies;
+    args.patch = contacts.patch;
+    args.old_patch = old.patch;
     args.arm = contacts.arm;
     args.old_arm = old.arm;
     args.num_old = old.num_contacts;

@@ -24,7 +24,7 @@ static const char polyhedra_text[] =
     "  - {name: floor, shape: floor, material: stone, position: [0, 0, -0.01],\n"
     "     motion: {kind: translate, velocity: [0, 0, 0.2], start: 0.02, end: 0.05}}\n";
 
-/// Spheres of all sizes and rocks that are thrown into a corner with a step.
+/// Spheres of all sizes, clumps and rocks that are thrown into a corner with a step.
 static const char spheres_text[] =
     "name: spheres\n"
     "time: {end: 0.06, step: 5e-5}\n"
@@ -36,7 +36,11 @@ static const char spheres_text[] =
     "  - {name: rock, source: rock, triangles: 40, seed: 3}\n"
     "  - {name: floor, source: box, size: [0.3, 0.3, 0.02]}\n"
     "  - {name: wall, source: box, size: [0.02, 0.3, 0.3]}\n"
+    "  - {name: trio, source: clump, spheres: [{position: [0, 0, 0], radius: 0.007},\n"
+    "     {position: [0.006, 0, 0], radius: 0.006}, {position: [0, 0.007, 0], radius: 0.005}]}\n"
     "particles:\n"
+    "  - {name: trios, shape: trio, material: stone, count: 40, seed: 3, velocity: [1, 0, -5],\n"
+    "     region: {min: [-0.07, -0.07, 0.4], max: [0.07, 0.07, 0.5]}}\n"
     "  - {name: balls, shape: ball, material: stone, count: 150, seed: 1, velocity: [1, 0, -2],\n"
     "     size: {distribution: uniform, min: 0.005, max: 0.02},\n"
     "     region: {min: [-0.07, -0.07, 0.001], max: [0.07, 0.07, 0.4]}}\n"
@@ -102,7 +106,7 @@ static void test_avoided_work_changes_no_bit(void)
 
 static void test_same_bits_however_it_is_run(void) { check_same_bits(polyhedra_text, "rocks_and_schoenhardt"); }
 
-static void test_same_bits_of_spheres(void) { check_same_bits(spheres_text, "spheres_and_rocks"); }
+static void test_same_bits_of_spheres(void) { check_same_bits(spheres_text, "spheres_clumps_and_rocks"); }
 
 int main(void)
 {

@@ -53,6 +53,19 @@ static void test_validate_finds_faults(void)
     scree_contact_list_destroy(&list);
 }
 
+/// How the contacts of `now` continue those of `old`.
+static scree_history_match_args match_of(const scree_contact_list *now, const scree_contact_list *old,
+                                         const scree_candidate_pair *pairs, bool has_same_pairs,
+                                         int64_t *old_of_contact, uint8_t *is_continued)
+{
+    const scree_history_match_args args = {
+        pairs,          now->first_of_pair, has_same_pairs ? old->first_of_pair : NULL,
+        old->bodies,    now->patch,         old->patch,
+        now->arm,       old->arm,           old->num_contacts,
+        old_of_contact, is_continued};
+    return args;
+}
+
 /// Random old and new lists: the history found by bisection is the one that a search through all finds.
 static void test_history_follows_pairs(void)
 {
@@ -75,9 +88,8 @@ static void test_history_follows_pairs(void)
         }
         int64_t old_of_contact[MAX];
         uint8_t is_continued[MAX] = {0};
-        scree_history_match_args args = {lists[1].bodies,       lists[1].first_of_pair, NULL,
-                                         lists[0].bodies,       lists[1].arm,           lists[0].arm,
-                                         lists[0].num_contacts, old_of_contact,         is_continued};
+        const scree_history_match_args args =
+            match_of(lists + 1, lists, lists[1].bodies, false, old_of_contact, is_continued);
         scree_history_match_launch(args, lists[1].num_contacts);
         int64_t num_continued = 0;
         for (int64_t c = 0; c < lists[1].num_contacts; ++c)
@@ -111,11 +123,29 @@ static void test_patches_find_the_nearest(void)
     now.arm[1].x = 1.02;
     int64_t old_of_contact[2];
     uint8_t is_continued[2] = {0, 0};
-    const scree_history_match_args args = {bodies, now.first_of_pair, old.first_of_pair, old.bodies, now.arm, old.arm,
-                                           2,      old_of_contact,    is_continued};
+    const scree_history_match_args args = match_of(&now, &old, bodies, true, old_of_contact, is_continued);
     scree_history_match_launch(args, 1);
     SCREE_CHECK_INT(old_of_contact[0], 1);
     SCREE_CHECK_INT(old_of_contact[1], 0);
+
+    // between different spheres of a clump nothing is handed over, however near their contacts are
+    is_continued[0] = is_continued[1] = 0;
+    old.patch[0] = now.patch[0] = 3 << SCREE_PATCH_BITS;
+    old.patch[1] = now.patch[1] = 4 << SCREE_PATCH_BITS;
+    scree_history_match_launch(args, 1);
+    SCREE_CHECK_INT(old_of_contact[0], 0);
+    SCREE_CHECK_INT(old_of_contact[1], 1);
+    is_continued[0] = is_continued[1] = 0;
+    now.patch[1] = 5 << SCREE_PATCH_BITS;
+    scree_history_match_launch(args, 1);
+    SCREE_CHECK_INT(old_of_contact[1], -1);
+    SCREE_CHECK_INT(is_continued[1], 0);
+    // nor where each has but one
+    is_continued[0] = is_continued[1] = 0;
+    now.first_of_pair[1] = old.first_of_pair[1] = 1;
+    old.patch[0] = 4 << SCREE_PATCH_BITS;
+    scree_history_match_launch(args, 1);
+    SCREE_CHECK_INT(old_of_contact[0], -1);
     scree_contact_list_destroy(&now);
     scree_contact_list_destroy(&old);
 }

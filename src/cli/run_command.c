@@ -141,11 +141,16 @@ static bool parse_command_line(run_request *request, int argc, char **argv)
 
 // ---- telling
 
-static double wall_clock(void)
+static double seconds_of(clockid_t clock)
 {
     struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
+    clock_gettime(clock, &now);
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static double wall_clock(void)
+{
+    return seconds_of(CLOCK_MONOTONIC);
 }
 
 /// Prints and forgets the messages, behind the progress line if there is one.
@@ -329,6 +334,7 @@ static scree_status write_summary(run_state *run, const char *outcome)
         (int64_t)(scree_simulation_time(run->simulation) / scree_simulation_time_step(run->simulation) + 0.5);
     const scree_run_result result = {.outcome = outcome,
                                      .wall_seconds = wall_clock() - run->start_clock,
+                                     .processor_seconds = seconds_of(CLOCK_PROCESS_CPUTIME_ID),
                                      .initial_energy = run->initial_energy,
                                      .energy_error = turned_over > 0 ? change / turned_over : (double)NAN,
                                      .steps_run = step - run->start_step,

@@ -197,6 +197,7 @@ static void put_everything(FILE *out, const scree_simulation *simulation, const 
     put_integer(out, "steps_run", result->steps_run);
     const double work = (double)num_particles * (double)result->steps_run;
     put_number(out, "particle_steps_per_second", result->wall_seconds > 0 ? work / result->wall_seconds : (double)NAN);
+    put_number(out, "processor_seconds", result->processor_seconds);
     put_key(out, "wall_seconds");
     put_value(out, result->wall_seconds);
     fputs("\n}\n", out);

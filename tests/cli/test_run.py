@@ -131,7 +131,7 @@ def same_datasets(first, second):
 def assert_same_run(first, second):
     """Two finished runs of the same scene: same bits everywhere but in the times they took."""
     a, b = summary_of(first), summary_of(second)
-    for key in ("wall_seconds", "particle_steps_per_second", "steps_run", "threads"):
+    for key in ("wall_seconds", "processor_seconds", "particle_steps_per_second", "steps_run", "threads"):
         a.pop(key)
         b.pop(key)
     # how often neighbours were searched is no result: a restart searches once more

@@ -681,7 +681,7 @@ static void test_summary_has_null_where_there_is_no_number(void)
     made.scene.name = name;
     go_to(&made, 4);
     scree_run_folder *run = open_folder(folder, &made, false, false);
-    const scree_run_result result = {"finished", 2.0, INFINITY, NAN, 100, 1};
+    const scree_run_result result = {"finished", 2.0, 3.5, INFINITY, NAN, 100, 1};
     SCREE_CHECK_INT(scree_run_folder_write_summary(run, &made.simulation, &result, NULL), SCREE_OK);
     scree_run_folder_close(run, NULL);
     size_t size;
@@ -695,6 +695,7 @@ static void test_summary_has_null_where_there_is_no_number(void)
     SCREE_CHECK_CONTAINS(text, "\"scene\": \"a \\\"b\\\" \\\\ \\u0009?\"");
     SCREE_CHECK_CONTAINS(text, "\"mass\": 9,");
     SCREE_CHECK_CONTAINS(text, "\"particle_steps_per_second\": 150,");
+    SCREE_CHECK_CONTAINS(text, "\"processor_seconds\": 3.5,");
     SCREE_CHECK(strstr(text, "nan") == NULL && strstr(text, "inf") == NULL);
     free(text);
     made_simulation_destroy(&made);

@@ -55,8 +55,8 @@ extern "C"
         const char *outcome; ///< "finished", "interrupted", "failed"; "failed" is not measured
         double wall_seconds;
         double processor_seconds; ///< of all threads
-        double initial_energy; ///< [J] balance at the start
-        double energy_error;   ///< [1] change of the balance over the largest energy turned over
+        double initial_energy;    ///< [J] balance at the start
+        double energy_error;      ///< [1] change of the balance over the largest energy turned over
         int64_t steps_run;
         int threads;
     } scree_run_result;

@@ -148,10 +148,7 @@ static double seconds_of(clockid_t clock)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-static double wall_clock(void)
-{
-    return seconds_of(CLOCK_MONOTONIC);
-}
+static double wall_clock(void) { return seconds_of(CLOCK_MONOTONIC); }
 
 /// Prints and forgets the messages, behind the progress line if there is one.
 static void tell_report(run_state *run)

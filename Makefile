@@ -6,7 +6,7 @@ help:
 	@echo "make build     the program build/release/scree and the library"
 	@echo "make test      builds and runs every test"
 	@echo "make demo      a pile of rocks, with pictures, in runs/demo"
-	@echo "make studies   the studies in validation/; STUDY=name for one, QUICK=1 for a version of minutes"
+	@echo "make studies   the studies in validation/; STUDY=name for one, QUICK=1 for a version of minutes in runs/quick"
 	@echo "make format    formats the sources"
 	@echo "make clean     removes build/"
 

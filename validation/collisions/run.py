@@ -80,7 +80,7 @@ def stored():
 def compute():
     for command in (["cmake", "--preset", "release", "--log-level=WARNING"],
                     ["cmake", "--build", BUILD, "--target", "collisions_study"]):
-        subprocess.run([str(part) for part in command], check=True, cwd=ROOT)
+        subprocess.run([str(part) for part in command], check=True, cwd=BUILD.resolve().parent.parent)
     done, lock = stored(), threading.Lock()
     todo = [case for case in cases() if key(case) not in done]
 

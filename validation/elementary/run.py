@@ -33,8 +33,8 @@ def run(command, **options):
 
 
 def compute():
-    run(["cmake", "--preset", "release", "--log-level=WARNING"], cwd=ROOT)
-    run(["cmake", "--build", BUILD, "--target", "elementary_study", "test_energy_conserving"], cwd=ROOT)
+    run(["cmake", "--preset", "release", "--log-level=WARNING"], cwd=BUILD.resolve().parent.parent)
+    run(["cmake", "--build", BUILD, "--target", "elementary_study", "test_energy_conserving"], cwd=BUILD.resolve().parent.parent)
     environment = dict(os.environ, OMP_NUM_THREADS="1")
     for program, path in ((BUILD / "studies/elementary_study", RESULTS), (BUILD / "tests/test_energy_conserving", ENERGY)):
         path.write_text(run([program], capture_output=True, text=True, env=environment).stdout)

@@ -42,8 +42,8 @@ def run(command, **options):
 
 def compute():
     targets = ["overlap_study", "overlap_study_single", "test_overlap_certificate"]
-    run(["cmake", "--preset", "release", "--log-level=WARNING"], cwd=ROOT)
-    run(["cmake", "--build", BUILD, "--target", *targets], cwd=ROOT)
+    run(["cmake", "--preset", "release", "--log-level=WARNING"], cwd=BUILD.resolve().parent.parent)
+    run(["cmake", "--build", BUILD, "--target", *targets], cwd=BUILD.resolve().parent.parent)
     counts = ["4", "6", "1000"] if os.environ.get("QUICK") == "1" else ["60", "60", "50000"]
     environment = dict(os.environ, OMP_NUM_THREADS="1")
     with open(RESULTS, "w") as file:

@@ -30,7 +30,7 @@ STYLE = {"scree": "C0o-", "forward Euler": "C3s-"}
 def compute():
     for command in (["cmake", "--preset", "release", "--log-level=WARNING"],
                     ["cmake", "--build", BUILD, "--target", "rotation_study"]):
-        subprocess.run([str(part) for part in command], check=True, cwd=ROOT)
+        subprocess.run([str(part) for part in command], check=True, cwd=BUILD.resolve().parent.parent)
     program = [str(BUILD / "studies/rotation_study"), str(TURNS)]
     RESULTS.write_text(subprocess.run(program, check=True, capture_output=True, text=True).stdout)
 

@@ -1,0 +1,190 @@
+"""A sphere as a clump of many spheres, beside polyhedra of it: force and rebound over their number; makes README.md.
+
+Usage: python run.py [--keep]
+  --keep   plots and page again from results.json, without computing anything
+QUICK=1 in the environment takes a quarter of the orientations.
+"""
+
+import json
+import math
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+FOLDER = Path(__file__).resolve().parent
+ROOT = FOLDER.parent.parent
+sys.path.insert(0, str(ROOT / "tools"))
+from run_folder import Run  # noqa: E402
+
+PROGRAM = ROOT / "build" / "release" / "scree"
+QUICK = os.environ.get("QUICK") == "1"
+RUNS = ROOT / "runs" / ("clumps_quick" if QUICK else "clumps")
+RESULTS = FOLDER / "results.json"
+ORIENTATIONS = 100 if QUICK else 400
+RADIUS, MODULUS = 0.01, 1e8 / (2 * (1 - 0.25**2))
+DEPTHS = [0.002, 0.005, 0.01, 0.02, 0.03]
+CLUMPS = [8, 16, 32, 64, 128, 256]
+MESHES = [320, 640, 1280, 2560, 5120]
+MESHES_OF_REBOUND = [20, 80, 320, 1280]
+SPEED, RESTITUTION = 0.05, 0.5
+
+
+def clump(num):
+    """Spheres of half the radius that touch the sphere from inside, on a spiral from pole to pole."""
+    spheres = []
+    for k in range(num):
+        z = 1 - (2 * k + 1) / num
+        r, angle = math.sqrt(1 - z * z), math.pi * (3 - math.sqrt(5)) * k
+        spheres.append({"position": [RADIUS / 2 * c for c in (r * math.cos(angle), r * math.sin(angle), z)],
+                        "radius": RADIUS / 2})
+    return {"source": "clump", "spheres": spheres}
+
+
+def mesh(num):
+    return {"source": "sphere", "size": 2 * RADIUS, "triangles": num}
+
+
+def orientations():
+    q = np.random.default_rng(1).normal(size=(ORIENTATIONS, 4))
+    return q / np.linalg.norm(q, axis=1, keepdims=True)
+
+
+def scene(shape, heights, velocity, law, time):
+    """Bodies in all orientations over one plate, once for every height of the centre."""
+    bodies = []
+    for n, height in enumerate(heights):
+        for k, q in enumerate(orientations()):
+            bodies.append({"position": [0.03 * (k - ORIENTATIONS / 2), 0.03 * (n - len(heights) / 2), height],
+                           "orientation": [round(float(c), 9) for c in q], "velocity": [0, 0, velocity]})
+    material = {"name": "glass", "density": 2500, "youngs_modulus": 1e8, "poisson_ratio": 0.25}
+    return {
+        "name": "clumps", "gravity": [0, 0, 0], "time": time, "materials": [material],
+        "contact_laws": [{"materials": ["glass", "glass"], "friction_coefficient": 0, **law}],
+        "shapes": [{"name": "body", **shape}, {"name": "plate", "source": "box", "size": [30, 3, 0.1]}],
+        "particles": [{"name": "bodies", "shape": "body", "material": "glass", "bodies": bodies}],
+        "walls": [{"name": "plate", "shape": "plate", "material": "glass", "position": [0, 0, -0.05]}],
+        "output": {"frames": time["end"], "series": 0, "checkpoint": 0},
+    }
+
+
+def run(name, text):
+    RUNS.mkdir(parents=True, exist_ok=True)
+    path = RUNS / f"{name}.yaml"
+    path.write_text(json.dumps(text))  # JSON is YAML
+    print("+ scree run", path.name, flush=True)
+    subprocess.run([str(PROGRAM), "run", str(path), "-o", str(RUNS / name), "--replace", "--quiet"], check=True,
+                   env=dict(os.environ, OMP_NUM_THREADS="1"))
+    return Run(RUNS / name)
+
+
+def press(name, shape):
+    """Mean and standard deviation over orientations of the force over Hertz's, for each depth."""
+    heights = [RADIUS * (1 - d) for d in DEPTHS]
+    frame = run(name, scene(shape, heights, 0, {"damping_ratio": 0}, {"end": 1e-9, "step": 1e-9})).surfaces("contacts").read(0)
+    force = np.zeros(len(DEPTHS) * ORIENTATIONS)
+    normal = np.abs(np.asarray(frame["normal_force"]).reshape(len(frame["i"]), -1)[:, -1])
+    np.add.at(force, np.asarray(frame["i"]), normal)
+    hertz = [4 / 3 * MODULUS * math.sqrt(RADIUS) * (d * RADIUS) ** 1.5 for d in DEPTHS]
+    shares = force.reshape(len(DEPTHS), ORIENTATIONS) / np.array(hertz)[:, None]
+    return {"mean": shares.mean(axis=1).tolist(), "deviation": shares.std(axis=1, ddof=1).tolist()}
+
+
+def rebound(name, shape):
+    """Kinetic energy after an impact over that before: mean and deviation over orientations."""
+    law = {"restitution_coefficient": RESTITUTION}
+    # a coarse mesh reaches out further than the sphere
+    result = run(name, scene(shape, [1.35 * RADIUS], -SPEED, law, {"end": 0.3, "step": 5e-6}))
+    energies = result.summary()["energies"]
+    mass = result.summary()["mass"]
+    return math.sqrt((energies["kinetic"] + energies["rotational"]) / (0.5 * mass * SPEED**2))
+
+
+def compute():
+    results = {"orientations": ORIENTATIONS, "depths": DEPTHS, "press": {}, "rebound": {}}
+    shapes = {f"clump_{n}": clump(n) for n in CLUMPS} | {f"mesh_{n}": mesh(n) for n in MESHES}
+    shapes["sphere"] = {"source": "sphere", "size": 2 * RADIUS}
+    for name, shape in shapes.items():
+        results["press"][name] = press(f"press_{name}", shape)
+    shapes = {f"clump_{n}": clump(n) for n in CLUMPS} | {f"mesh_{n}": mesh(n) for n in MESHES_OF_REBOUND}
+    shapes["sphere"] = {"source": "sphere", "size": 2 * RADIUS}
+    for name, shape in shapes.items():
+        results["rebound"][name] = rebound(f"rebound_{name}", shape)
+    RESULTS.write_text(json.dumps(results, indent=1) + "\n")
+
+
+def expected(num, depth):
+    """Of evenly spread spheres of half the radius, over Hertz's force."""
+    return num * math.sqrt(0.5) * 0.4 * depth
+
+
+def draw_force(results, path):
+    figure, axes = plt.subplots(1, 2, figsize=(11, 4.6), layout="constrained")
+    k = DEPTHS.index(0.02)
+    error = 1 / math.sqrt(results["orientations"])
+    for kind, numbers, style, text in (("clump", CLUMPS, "C3o", "clump of so many spheres"),
+                                       ("mesh", MESHES, "C0s", "polyhedron of so many triangles")):
+        press = [results["press"][f"{kind}_{n}"] for n in numbers]
+        axes[0].errorbar(numbers, [p["mean"][k] for p in press], [error * p["deviation"][k] for p in press], fmt=style,
+                         label=text)
+    axes[0].plot(CLUMPS, [expected(n, 0.02) for n in CLUMPS], "C3-", lw=1, label="evenly spread spheres, closed form")
+    axes[0].axhline(1, color="k", lw=0.8)
+    axes[0].text(8, 1.05, "Hertz")
+    axes[0].set(xscale="log", yscale="log", xlabel="number", ylabel="mean force / Hertz, d = 0.02 R")
+    axes[0].legend(frameon=False)
+    for n, colour in zip((16, 64, 256), ("C1", "C3", "C5"), strict=True):
+        axes[1].plot(DEPTHS, results["press"][f"clump_{n}"]["mean"], "o", color=colour, label=f"clump of {n}")
+        axes[1].plot(DEPTHS, [expected(n, d) for d in DEPTHS], "-", color=colour, lw=1)
+    for n, colour in zip((320, 5120), ("C9", "C0"), strict=True):
+        axes[1].plot(DEPTHS, results["press"][f"mesh_{n}"]["mean"], "s-", color=colour, label=f"{n} triangles")
+    axes[1].axhline(1, color="k", lw=0.8)
+    axes[1].set(xlabel="depth d/R", ylabel="mean force / Hertz", ylim=(0, 2.5))
+    axes[1].legend(frameon=False)
+    figure.savefig(path, dpi=110)
+    plt.close(figure)
+
+
+def draw_rebound(results, path):
+    figure, axes = plt.subplots(figsize=(6.5, 4.4), layout="constrained")
+    for kind, numbers, style, text in (("clump", CLUMPS, "C3o-", "clump of so many spheres"),
+                                       ("mesh", MESHES_OF_REBOUND, "C0s-", "polyhedron of so many triangles")):
+        axes.plot(numbers, [results["rebound"][f"{kind}_{n}"] for n in numbers], style, label=text)
+    axes.axhline(results["rebound"]["sphere"], color="k", lw=0.8, label="sphere")
+    axes.set(xscale="log", xlabel="number", ylabel="speed after / before", ylim=(0, 0.8))
+    axes.legend(frameon=False)
+    figure.savefig(path, dpi=110)
+    plt.close(figure)
+
+
+def table(results):
+    lines = ["| shape | " + " | ".join(f"d = {d} R" for d in DEPTHS) + " | rebound |",
+             "|---|" + "---|" * (len(DEPTHS) + 1)]
+    names = {"sphere": "sphere"} | {f"clump_{n}": f"clump of {n}" for n in CLUMPS}
+    names |= {f"mesh_{n}": f"{n} triangles" for n in sorted({*MESHES, *MESHES_OF_REBOUND})}
+    for name, text in names.items():
+        press, after = results["press"].get(name), results["rebound"].get(name)
+        cells = [f"{m:.3f} ± {s:.3f}" for m, s in zip(press["mean"], press["deviation"], strict=True)] if press else [""] * 5
+        lines.append(f"| {text} | " + " | ".join(cells) + f" | {'' if after is None else f'{after:.3f}'} |")
+    return "\n".join(lines)
+
+
+def main():
+    if "--keep" not in sys.argv[1:]:
+        compute()
+    results = json.loads(RESULTS.read_text())
+    draw_force(results, FOLDER / "force.png")
+    draw_rebound(results, FOLDER / "rebound.png")
+    page = (FOLDER / "page.md").read_text()
+    for name, text in {"table": table(results), "orientations": str(results["orientations"])}.items():
+        page = page.replace("{{" + name + "}}", text)
+    (FOLDER / "README.md").write_text(page)
+
+
+if __name__ == "__main__":
+    main()

@@ -257,7 +257,8 @@ static scree_status start(scree_simulation *s, scree_report *report)
     s->narrow_phase.bounds_separation = s->scene->solver.bound_separation;
     scree_place_walls(s, 0);
     scree_place_particles(s);
-    scree_status status = scree_update_neighbours(s);
+    scree_status status = scree_check_walls(s, report);
+    if (status == SCREE_OK) status = scree_update_neighbours(s);
     if (status == SCREE_OK) status = scree_update_contacts(s);
     if (status == SCREE_OK) status = scree_check_start(s, report);
     if (status == SCREE_OK) status = scree_update_forces(s);

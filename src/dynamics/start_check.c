@@ -159,35 +159,36 @@ static bool falls_into(scree_box box, scree_vec3 start, double radius, const dou
     return begin <= end;
 }
 
-/// Particles at rest that nothing is below. Where walls are carried along, they may still come.
-static void warn_of_lost(const scree_simulation *s, scree_report *report)
+/// Particles at rest that nothing is below: outside of the walls. Where walls are carried along, they may still come.
+/// Returns their number.
+static int64_t check_lost(const scree_simulation *s, scree_report *report)
 {
     const double *gravity = s->scene->gravity;
     bool is_known = s->num_walls > 0 && (gravity[0] != 0 || gravity[1] != 0 || gravity[2] != 0);
     for (int32_t w = 0; w < s->num_walls; ++w) is_known &= s->scene->walls[w].motion.kind != SCREE_MOTION_TRANSLATE;
     scree_box *boxes = is_known ? make_wall_boxes(s) : NULL;
-    int64_t num = 0, first = -1;
+    int64_t num = 0;
     for (int64_t i = 0; boxes != NULL && i < s->particles.num_particles; ++i)
     {
         const scree_vec3 v = s->particles.velocity[i];
         bool is_lost = scree_vec3_dot(v, v) == 0;
         for (int32_t w = 0; w < s->num_walls && is_lost; ++w)
             is_lost = !falls_into(boxes[w], s->particles.position[i], bounding_radius(s, i), gravity);
-        if (is_lost && num++ == 0) first = i;
+        if (!is_lost || ++num > MAX_TOLD) continue;
+        scree_report_add(
+            report,
+            "%s is outside of the walls: none is below it, and it would fall for ever; move it, or make the "
+            "walls reach below it",
+            describe(s, i).text);
     }
     free(boxes);
-    if (num > 0)
-        scree_report_warn(
-            report,
-            "%lld particles have no wall below them, the first is %s; they will fall for ever: move them, "
-            "or make the walls reach below them",
-            (long long)num, describe(s, first).text);
+    tell_more(report, num, "are outside of the walls");
+    return num;
 }
 
 scree_status scree_check_start(const scree_simulation *simulation, scree_report *report)
 {
-    const int64_t num_faults =
-        check_contacts(simulation, report) + check_centres(simulation, report) + check_solids(simulation, report);
-    warn_of_lost(simulation, report);
+    const int64_t num_faults = check_contacts(simulation, report) + check_centres(simulation, report) +
+                               check_solids(simulation, report) + check_lost(simulation, report);
     return num_faults > 0 ? SCREE_INVALID_INPUT : SCREE_OK;
 }

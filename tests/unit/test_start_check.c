@@ -1,4 +1,4 @@
-// What a run cannot start from is refused, with the particle, the place and the remedy; what looks lost is told.
+// What a run cannot start from is refused, with the particle or wall, the place and the remedy.
 #include "scree/scene.h"
 #include "scree/simulation.h"
 
@@ -63,15 +63,18 @@ static void test_refused(void)
     }
 }
 
-static void test_warned_of(void)
+/// A ball outside of the walls, unless the rim may still be hit, a push may lead anywhere, or everything falls.
+static void test_outside_of_the_walls(void)
 {
     char *messages = messages_of(HEAD BALLS "      - {position: [0, 0, 0.01]}\n      - {position: [0.22, 0, 0.01]}\n"
                                             "      - {position: [0, 0, -0.5]}\n" FLOOR,
-                                 SCREE_OK);
+                                 SCREE_INVALID_INPUT);
     SCREE_CHECK_CONTAINS(messages,
-                         "warning: 2 particles have no wall below them, the first is particle 1 of \"balls\"");
+                         "particle 1 of \"balls\" at (0.22, 0, 0.01) is outside of the walls: none is below it, "
+                         "and it would fall for ever; move it, or make the walls reach below it");
+    SCREE_CHECK_CONTAINS(messages, "particle 2 of \"balls\" at (0, 0, -0.5) is outside of the walls");
+    SCREE_CHECK(strstr(messages, "particle 0") == NULL);
     free(messages);
-    // the rim may still be hit, a push may lead anywhere, and without walls everything falls
     messages = messages_of(HEAD BALLS "      - {position: [0.205, 0, 0.01]}\n"
                                       "      - {position: [0.3, 0, 0.01], velocity: [-1, 0, 0]}\n" FLOOR,
                            SCREE_OK);
@@ -82,9 +85,52 @@ static void test_warned_of(void)
     free(messages);
 }
 
+/// A floor with a moving block that reaches into it and a second that moves as said.
+static void check_motion(const char *first, const char *second, double distance, bool is_refused)
+{
+    char text[2048];
+    snprintf(text, sizeof text,
+             HEAD BALLS "      - {position: [0, 0, 0.01]}\n" FLOOR
+                        "  - {name: shell, shape: block, material: glass, position: [1, 0, 0]%s}\n"
+                        "  - {name: lifter, shape: block, material: glass, position: [1, 0, %g]%s}\n",
+             first, distance, second);
+    char *messages = messages_of(text, is_refused ? SCREE_INVALID_INPUT : SCREE_OK);
+    if (is_refused)
+        SCREE_CHECK_CONTAINS(messages,
+                             "walls \"shell\" and \"lifter\" reach into each other, but move differently and so "
+                             "would be torn apart; give both the same motion");
+    else SCREE_CHECK(strstr(messages, "torn") == NULL);
+    free(messages);
+}
+
+static void test_motions_that_tear_walls_apart(void)
+{
+    static const char *const turn = ", motion: {kind: rotate, axis: [0, 1, 0], centre: [1, 0, 0], angular_velocity: 3}";
+    static const char *const same =
+        ", motion: {kind: rotate, axis: [0, -2, 0], centre: [1, 5, 0], angular_velocity: -3}";
+    static const char *const faster =
+        ", motion: {kind: rotate, axis: [0, 1, 0], centre: [1, 0, 0], angular_velocity: 3.1}";
+    static const char *const elsewhere =
+        ", motion: {kind: rotate, axis: [0, 1, 0], centre: [1.01, 0, 0], angular_velocity: 3}";
+    static const char *const later =
+        ", motion: {kind: rotate, axis: [0, 1, 0], centre: [1, 0, 0], angular_velocity: 3, start: 0.1}";
+    static const char *const gone = ", removed_at: 0.05, motion: {kind: translate, velocity: [0, 0, 1], start: 0.1}";
+    static const char *const away = ", motion: {kind: translate, velocity: [0, 0, 1]}";
+    check_motion(turn, same, 0.3, false);
+    check_motion(turn, faster, 0.3, true);
+    check_motion(turn, elsewhere, 0.3, true);
+    check_motion(turn, later, 0.3, true);
+    check_motion(turn, away, 0.3, true);
+    check_motion(turn, "", 0.3, false);     // what stands still may be moved in
+    check_motion(turn, faster, 0.4, false); // flush
+    check_motion(turn, faster, 0.5, false);
+    check_motion(later, gone, 0.3, false);
+}
+
 int main(void)
 {
     SCREE_RUN(test_refused);
-    SCREE_RUN(test_warned_of);
+    SCREE_RUN(test_outside_of_the_walls);
+    SCREE_RUN(test_motions_that_tear_walls_apart);
     return SCREE_TEST_END();
 }

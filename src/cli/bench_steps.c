@@ -17,7 +17,7 @@ enum
 };
 
 const scree_bench_column scree_bench_step_columns[] = {
-    {"name", "bed                     ", 0, 0},
+    {"name", "bed                                 ", 0, 0},
     {"threads", "thr", 1, 0},
     {"particles", "particles", 1, 0},
     {"pairs_per_particle", "cand/p", 1, 2},
@@ -33,6 +33,7 @@ const scree_bench_column scree_bench_step_columns[] = {
     {"core_ns_per_particle", "ns/particle", 1, 0},
     {"particle_steps_per_second", "p.steps/s", 1, 0},
     {"spread", "spread %", 100, 0},
+    {"times_as_long", "times as long", 1, 3},
 };
 const int scree_bench_num_step_columns = sizeof scree_bench_step_columns / sizeof *scree_bench_step_columns;
 

@@ -11,9 +11,11 @@
 /// The command line of a benchmark, understood. 0 and NULL: the benchmark's own choice.
 typedef struct scree_bench_request
 {
-    const char *name;     ///< of the benchmark
-    const char *shape;    ///< only this one
-    const char *scene;    ///< file of the rig
+    const char *name;       ///< of the benchmark
+    const char *shape;      ///< only this one
+    const char *scene;      ///< file of the rig
+    const char **overrides; ///< (num_overrides) of the scene
+    int num_overrides;
     const char *json;     ///< where the result goes as JSON
     const char *baseline; ///< result to compare with
     const char *order;    ///< of particles in a bed: "lattice", "morton" or "random"
@@ -24,6 +26,7 @@ typedef struct scree_bench_request
     int64_t repetitions;  ///< at least 3
     int64_t search_every; ///< [steps] between searches in a bed
     int64_t threads;
+    int64_t parts;      ///< of a run
     bool shows_savings; ///< each piece of avoided work is switched off in turn
 } scree_bench_request;
 
@@ -112,6 +115,7 @@ scree_status scree_bench_broad_phase(scree_bench *bench);
 scree_status scree_bench_packing(scree_bench *bench);
 scree_status scree_bench_spheres(scree_bench *bench);
 scree_status scree_bench_rig(scree_bench *bench);
+scree_status scree_bench_scene(scree_bench *bench);
 scree_status scree_bench_scaling(scree_bench *bench);
 
 #endif

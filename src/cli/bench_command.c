@@ -19,6 +19,7 @@ static const char usage[] =
     "               spheres\n"
     "  spheres      whole steps of a bed of spheres with five contacts each\n"
     "  rig          the first steps of the calibration rig with rocks of 10 to 1000 triangles\n"
+    "  scene        a scene from its start, part by part\n"
     "  scaling      beds of more and more particles on one and on more threads\n"
     "\n"
     "  --particles N      bodies (broad-phase, scaling, rig: largest number)\n"
@@ -32,7 +33,9 @@ static const char usage[] =
     "  --search-every N   steps between searches of candidate pairs in a bed, default 20; 0: none, for nothing moves\n"
     "  --order NAME       of the particles in a bed: lattice (default), morton or random\n"
     "  --savings          beds: each piece of avoided work is done after all, in turn\n"
-    "  --scene FILE       of the rig, default scenes/calibration_rig_demo.yaml\n"
+    "  --scene FILE       of the rig, default scenes/calibration_rig_demo.yaml, or of scene\n"
+    "  --set PATH=VALUE   scene: replaces a value of it; can be repeated\n"
+    "  --parts N          scene: rows of the table, default 10\n"
     "  --threads N        default 1; scaling: compares one with N, default all\n"
     "  --json FILE        writes the result; \"-\" for standard output, then without tables\n"
     "  --baseline FILE    prints ratios to a result that was written before, one of --json or several by name\n"
@@ -53,7 +56,7 @@ typedef struct bench_kind
 static const bench_kind kinds[] = {
     {"broad-phase", scree_bench_broad_phase, 1000000, 1, 5}, {"packing", scree_bench_packing, 20000, 20, 5},
     {"spheres", scree_bench_spheres, 50000, 20, 7},          {"rig", scree_bench_rig, 160, 10000, 1},
-    {"scaling", scree_bench_scaling, 100000, 20, 3},
+    {"scaling", scree_bench_scaling, 100000, 20, 3},         {"scene", scree_bench_scene, 0, 0, 1},
 };
 enum
 {
@@ -93,6 +96,7 @@ static bool parse_valued(scree_bench_request *request, const char *option, const
         {"--repetitions", &request->repetitions, 1, 1000},
         {"--search-every", &request->search_every, 0, 1000000},
         {"--threads", &request->threads, 1, 4096},
+        {"--parts", &request->parts, 1, 100000},
     };
     for (size_t k = 0; k < sizeof numbers / sizeof *numbers; ++k)
     {
@@ -116,6 +120,7 @@ static bool parse_valued(scree_bench_request *request, const char *option, const
     if (strcmp(option, "--shape") == 0) request->shape = value;
     else if (strcmp(option, "--order") == 0) request->order = value;
     else if (strcmp(option, "--scene") == 0) request->scene = value;
+    else if (strcmp(option, "--set") == 0) request->overrides[request->num_overrides++] = value;
     else if (strcmp(option, "--json") == 0) request->json = value;
     else if (strcmp(option, "--baseline") == 0) request->baseline = value;
     else return refuse("unknown option ", option);
@@ -213,9 +218,13 @@ int scree_bench_command(int argc, char **argv)
                                    .steps = kind->steps,
                                    .repetitions = kind->repetitions,
                                    .search_every = 20,
+                                   .parts = 10,
+                                   .overrides = calloc((size_t)argc, sizeof(const char *)),
                                    .threads = 1};
-    if (!parse_options(&request, argc, argv)) return SCREE_EXIT_USAGE;
-    int exit_code = run_benchmark(kind, &request);
+    int exit_code = SCREE_EXIT_USAGE;
+    if (request.overrides == NULL) exit_code = SCREE_EXIT_FAILED;
+    else if (parse_options(&request, argc, argv)) exit_code = run_benchmark(kind, &request);
+    free(request.overrides);
     if (fflush(stdout) != 0 && exit_code == SCREE_EXIT_DONE)
     {
         fprintf(stderr, "scree bench: standard output could not be written\n");

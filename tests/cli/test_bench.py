@@ -82,6 +82,14 @@ def test_rig():
     assert all(case["steps"] == 5 and case["particles"] == 20 and set(case["stages"]) == STAGES for case in cases)
 
 
+def test_scene(tmp_path):
+    arguments = ["--scene", "scenes/gravity_packing.yaml", "--set", "particles.fall.count=20", "--steps", 7]
+    cases = result_of("scene", *arguments, "--parts", 3)["cases"]
+    assert [case["steps"] for case in cases] == [2, 2, 3] and cases[0]["particles"] == 20
+    assert [case["name"] for case in cases] == ["to step 2", "to step 4", "to step 7"]
+    assert bench("scene", *arguments, "--set", "particles.fall.count=-1").returncode == 2
+
+
 def test_broad_phase():
     cases = result_of("broad-phase", "--particles", 1000, "--repetitions", 2)["cases"]
     assert [case["name"] for case in cases] == ["size 1:2", "size 1:1000", "elongation 1:50"]

@@ -33,7 +33,7 @@ target_compile_options(scree_options INTERFACE
     # a*b + c keeps its two roundings: the same bits from every compiler, processor and the CUDA kernels
     $<$<COMPILE_LANGUAGE:C,CXX>:-ffp-contract=off>
     $<$<AND:$<BOOL:${may_have_fma}>,$<C_COMPILER_ID:GNU>,$<COMPILE_LANGUAGE:C,CXX>>:-fno-tree-slp-vectorize>
-    # nobody reads errno after sqrt(); values are not touched by this, unlike by fast-math
-    $<$<COMPILE_LANGUAGE:C>:-fno-math-errno>
+    # nobody reads errno after sqrt() or the flags of the processor; values are not touched by this, unlike by fast-math
+    $<$<COMPILE_LANGUAGE:C>:-fno-math-errno;-fno-trapping-math>
     $<$<AND:$<BOOL:${SCREE_NATIVE}>,$<COMPILE_LANGUAGE:C,CXX>>:-march=native>)
 target_link_libraries(scree_options INTERFACE OpenMP::OpenMP_C m)

@@ -88,6 +88,11 @@ SCREE_FN scree_vec3 scree_vec3_cross(scree_vec3 a, scree_vec3 b)
     return scree_vec3_make(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
 }
 SCREE_FN scree_real scree_vec3_length(scree_vec3 a) { return scree_sqrt(scree_vec3_dot(a, a)); }
+/// One of two vectors that are there already: no branch.
+SCREE_FN scree_vec3 scree_vec3_select(bool is_a, scree_vec3 a, scree_vec3 b)
+{
+    return scree_vec3_make(is_a ? a.x : b.x, is_a ? a.y : b.y, is_a ? a.z : b.z);
+}
 SCREE_FN scree_vec3 scree_vec3_min(scree_vec3 a, scree_vec3 b)
 {
     return scree_vec3_make(scree_min(a.x, b.x), scree_min(a.y, b.y), scree_min(a.z, b.z));

@@ -17,14 +17,37 @@ typedef struct scree_body_motion
     const int32_t *material;
 } scree_body_motion;
 
+/// How a body moves.
+typedef struct scree_motion
+{
+    scree_vec3 position;         ///< [m]
+    scree_vec3 velocity;         ///< [m/s] at the position
+    scree_vec3 angular_velocity; ///< [rad/s]
+} scree_motion;
+
+SCREE_FN scree_motion scree_motion_of(const scree_body_motion *bodies, int32_t i)
+{
+    scree_motion motion;
+    motion.position = bodies->pose[i].position;
+    motion.velocity = bodies->velocity[i];
+    motion.angular_velocity = bodies->angular_velocity[i];
+    return motion;
+}
+
 /// Velocity of i against j at the point position_i + arm.
+SCREE_FN scree_vec3 scree_velocity_between(const scree_motion *i, const scree_motion *j, scree_vec3 arm)
+{
+    const scree_vec3 point = scree_vec3_add(i->position, arm);
+    const scree_vec3 arm_j = scree_vec3_sub(point, j->position);
+    const scree_vec3 v_i = scree_vec3_add(i->velocity, scree_vec3_cross(i->angular_velocity, arm));
+    const scree_vec3 v_j = scree_vec3_add(j->velocity, scree_vec3_cross(j->angular_velocity, arm_j));
+    return scree_vec3_sub(v_i, v_j);
+}
+
 SCREE_FN scree_vec3 scree_relative_velocity(const scree_body_motion *bodies, int32_t i, int32_t j, scree_vec3 arm)
 {
-    const scree_vec3 point = scree_vec3_add(bodies->pose[i].position, arm);
-    const scree_vec3 arm_j = scree_vec3_sub(point, bodies->pose[j].position);
-    const scree_vec3 v_i = scree_vec3_add(bodies->velocity[i], scree_vec3_cross(bodies->angular_velocity[i], arm));
-    const scree_vec3 v_j = scree_vec3_add(bodies->velocity[j], scree_vec3_cross(bodies->angular_velocity[j], arm_j));
-    return scree_vec3_sub(v_i, v_j);
+    const scree_motion motion_i = scree_motion_of(bodies, i), motion_j = scree_motion_of(bodies, j);
+    return scree_velocity_between(&motion_i, &motion_j, arm);
 }
 
 typedef struct scree_contact_force_args

@@ -56,14 +56,15 @@ SCREE_FN scree_vec3 scree_normal_lever(scree_vec3 area_vector, scree_vec3 torque
 /// By how much a spring shrinks while its contact is unloaded; 1 while it is loaded.
 SCREE_FN scree_real scree_unloading_ratio(const scree_contact_kinematics *k, const scree_contact_force *f)
 {
-    return f->tangential_stiffness < k->tangential_stiffness ? f->tangential_stiffness / k->tangential_stiffness : 1;
+    const scree_real ratio = f->tangential_stiffness / k->tangential_stiffness;
+    return f->tangential_stiffness < k->tangential_stiffness ? ratio : 1;
 }
 
 /// The vector, or one of length `limit` in its direction if it is longer.
 SCREE_FN scree_vec3 scree_cut_to_length(scree_vec3 v, scree_real limit)
 {
     const scree_real squared = scree_vec3_dot(v, v);
-    return squared > limit * limit ? scree_vec3_scale(v, limit / scree_sqrt(squared)) : v;
+    return scree_vec3_select(squared > limit * limit, scree_vec3_scale(v, limit / scree_sqrt(squared)), v);
 }
 
 /// History turned into the present tangent plane, keeping its length.
@@ -72,8 +73,8 @@ SCREE_FN scree_vec3 scree_rotate_into_plane(scree_vec3 force, scree_vec3 normal)
     const scree_real squared = scree_vec3_dot(force, force);
     const scree_vec3 in_plane = scree_vec3_add_scaled(force, normal, -scree_vec3_dot(force, normal));
     const scree_real squared_in_plane = scree_vec3_dot(in_plane, in_plane);
-    if (!(squared_in_plane > 0)) return scree_vec3_zero();
-    return scree_vec3_scale(in_plane, scree_sqrt(squared / squared_in_plane));
+    const scree_vec3 turned = scree_vec3_scale(in_plane, scree_sqrt(squared / squared_in_plane));
+    return scree_vec3_select(squared_in_plane > 0, turned, scree_vec3_zero());
 }
 
 #endif

@@ -22,11 +22,11 @@ SCREE_FN void scree_contact_law(const scree_force_law *law, const scree_contact_
     else scree_hertz_mindlin(law, k, f);
 
     // of approach, and dV/dt over |S| where the normal force has a lever
-    const scree_real approach =
-        scree_vec3_dot(k->lever, k->relative_rotation) - scree_vec3_dot(k->normal, k->relative_velocity);
+    scree_real approach = -scree_vec3_dot(k->normal, k->relative_velocity);
+    if (law->model == SCREE_MODEL_ENERGY_CONSERVING) approach += scree_vec3_dot(k->lever, k->relative_rotation);
     const scree_real damping = 2 * law->damping_ratio * scree_sqrt(k->effective_mass * f->normal_stiffness);
-    scree_real normal_force = f->elastic_force + damping * approach;
-    if (normal_force < 0 && !law->has_attraction) normal_force = 0;
+    const scree_real total = f->elastic_force + damping * approach;
+    const scree_real normal_force = total < 0 && !law->has_attraction ? 0 : total;
     f->normal_force = scree_vec3_scale(k->normal, normal_force);
 
     const scree_real pressing = scree_max(normal_force, 0);

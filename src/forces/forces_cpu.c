@@ -1,7 +1,5 @@
 #include "forces/forces.h"
 
-SCREE_DEFINE_LAUNCH(scree_contact_force)
 SCREE_DEFINE_LAUNCH(scree_gather)
 SCREE_DEFINE_LAUNCH(scree_collision)
 SCREE_DEFINE_LAUNCH(scree_wall_load)
-SCREE_DEFINE_LAUNCH(scree_work)

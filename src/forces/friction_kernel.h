@@ -6,6 +6,9 @@
 /// Bilock (2020), eqs. 4.8 and 4.9. History is turned into the present tangent plane before it is added to. On slip it
 /// is cut to the Coulomb value, not set to F_t: where the dashpot alone exceeds the limit, a spring that takes the
 /// dashpot's place would hold energy that nothing has put in. As it is, no step of the law gives energy.
+///
+/// Which contacts slip or unload cannot be foreseen, so both ways are computed and one is taken: without branches,
+/// compilers make vectors of contacts.
 #ifndef SCREE_FRICTION_KERNEL_H
 #define SCREE_FRICTION_KERNEL_H
 
@@ -33,7 +36,8 @@ SCREE_FN void scree_friction(const scree_force_law *law, const scree_contact_kin
     f->tangential_force = scree_cut_to_length(force, limit);
     spring = scree_cut_to_length(spring, limit);
     f->spring_force = spring;
-    f->spring_energy = k_t > 0 ? scree_vec3_dot(spring, spring) / (2 * k_t) : 0;
+    const scree_real energy = scree_vec3_dot(spring, spring) / (2 * k_t);
+    f->spring_energy = k_t > 0 ? energy : 0;
 }
 
 #endif

@@ -46,6 +46,62 @@ SCREE_FN scree_real scree_inverse_mass_at(const scree_work_args *a, int32_t b, s
            lever.z * lever.z / inertia.z;
 }
 
+/// What the work of one contact is made of; velocities are those of the end of the step.
+typedef struct scree_work_terms
+{
+    scree_real hysteresis; ///< [J] of the elastic normal force
+    scree_real damping;    ///< [J] of the rest of the normal force
+    scree_real lost;       ///< [J] of the tangential force and the moment, to friction or to damping
+} scree_work_terms;
+
+/// `turning` is the speed of approach that turning adds where the normal force has a lever.
+SCREE_FN scree_work_terms scree_work_terms_make(scree_vec3 n, scree_vec3 v, scree_real turning, scree_vec3 normal_force,
+                                                scree_vec3 tangential_force, scree_real elastic,
+                                                scree_real moment_power, scree_real time_step)
+{
+    const scree_real approach = turning - scree_vec3_dot(n, v);
+    const scree_real normal = scree_vec3_dot(normal_force, n);
+    scree_work_terms terms;
+    terms.hysteresis = elastic * approach * time_step;
+    terms.damping = (normal - elastic) * approach * time_step;
+    const scree_real power = scree_vec3_dot(tangential_force, v) + (moment_power + normal * turning);
+    terms.lost = -power * time_step;
+    return terms;
+}
+
+SCREE_FN void scree_work_begin(scree_work_sums *sums)
+{
+    sums->damping = 0;
+    sums->friction = 0;
+    sums->hysteresis = 0;
+    sums->input = 0;
+    sums->smallest_step_squared = SCREE_REAL_MAX;
+}
+
+/// Adds the terms of contact c: what its springs do not take up is lost.
+SCREE_FN void scree_work_add(const scree_contact_list *contacts, int64_t c, scree_work_terms terms,
+                             scree_work_sums *sums)
+{
+    const bool is_turning = !contacts->acts_in_points && contacts->is_turning[c];
+    const scree_real lost = terms.lost - contacts->spring_work[c];
+    sums->hysteresis += terms.hysteresis - contacts->elastic_work[c];
+    sums->damping += terms.damping;
+    // no branch: which contacts slip cannot be foreseen, and adding 0 changes nothing
+    const bool is_friction = contacts->is_slipping[c] || is_turning;
+    sums->friction += is_friction ? lost : 0;
+    sums->damping += is_friction ? 0 : lost;
+}
+
+/// A moving wall works on the particle: contact c with wall j.
+SCREE_FN scree_real scree_work_of_wall(const scree_work_args *a, int64_t c, int32_t j, scree_vec3 arm_j)
+{
+    const scree_vec3 moment = a->contacts.acts_in_points ? scree_vec3_zero() : a->contacts.moment[c];
+    const scree_vec3 v_wall =
+        scree_vec3_add(a->bodies.velocity[j], scree_vec3_cross(a->bodies.angular_velocity[j], arm_j));
+    const scree_vec3 f = scree_vec3_add(a->contacts.normal_force[c], a->contacts.tangential_force[c]);
+    return (scree_vec3_dot(f, v_wall) + scree_vec3_dot(moment, a->bodies.angular_velocity[j])) * a->time_step;
+}
+
 /// Adds contact c to the sums.
 SCREE_FN void scree_work_of_contact(const scree_work_args *a, int64_t c, scree_work_sums *sums)
 {
@@ -55,39 +111,19 @@ SCREE_FN void scree_work_of_contact(const scree_work_args *a, int64_t c, scree_w
     const scree_vec3 rotation = scree_vec3_sub(a->bodies.angular_velocity[pair.i], a->bodies.angular_velocity[pair.j]);
     const scree_force_law *law =
         a->laws + (int64_t)a->bodies.material[pair.i] * a->num_materials + a->bodies.material[pair.j];
-    // speed of approach, with what turning adds where the normal force has a lever
     scree_real turning = 0;
     if (law->model == SCREE_MODEL_ENERGY_CONSERVING)
         turning =
             scree_vec3_dot(scree_normal_lever(a->contacts.area_vector[c], a->contacts.torque_vector[c]), rotation);
-    const scree_real approach = turning - scree_vec3_dot(n, v);
+    const scree_real moment_power = a->contacts.acts_in_points ? 0 : scree_vec3_dot(a->contacts.moment[c], rotation);
+    const scree_work_terms terms =
+        scree_work_terms_make(n, v, turning, a->contacts.normal_force[c], a->contacts.tangential_force[c],
+                              a->contacts.elastic_force[c], moment_power, a->time_step);
+    scree_work_add(&a->contacts, c, terms, sums);
 
-    // normal: what the spring takes up and what is damped
-    const scree_real elastic = a->contacts.elastic_force[c];
-    const scree_real normal = scree_vec3_dot(a->contacts.normal_force[c], n);
-    sums->hysteresis += elastic * approach * a->time_step - a->contacts.elastic_work[c];
-    sums->damping += (normal - elastic) * approach * a->time_step;
-
-    // tangential and moments: what the springs do not take up is lost
-    const bool has_extent = !a->contacts.acts_in_points;
-    const scree_vec3 moment = has_extent ? a->contacts.moment[c] : scree_vec3_zero();
-    const scree_real power =
-        scree_vec3_dot(a->contacts.tangential_force[c], v) + (scree_vec3_dot(moment, rotation) + normal * turning);
-    const scree_real lost = -power * a->time_step - a->contacts.spring_work[c];
-    if (a->contacts.is_slipping[c] || (has_extent && a->contacts.is_turning[c])) sums->friction += lost;
-    else sums->damping += lost;
-
-    // a moving wall works on the particle
     const scree_vec3 point = scree_vec3_add(a->bodies.pose[pair.i].position, arm);
     const scree_vec3 arm_j = scree_vec3_sub(point, a->bodies.pose[pair.j].position);
-    if (pair.j >= a->num_particles)
-    {
-        const scree_vec3 v_wall =
-            scree_vec3_add(a->bodies.velocity[pair.j], scree_vec3_cross(a->bodies.angular_velocity[pair.j], arm_j));
-        const scree_vec3 f = scree_vec3_add(a->contacts.normal_force[c], a->contacts.tangential_force[c]);
-        sums->input +=
-            (scree_vec3_dot(f, v_wall) + scree_vec3_dot(moment, a->bodies.angular_velocity[pair.j])) * a->time_step;
-    }
+    if (pair.j >= a->num_particles) sums->input += scree_work_of_wall(a, c, pair.j, arm_j);
 
     // the stiffer of the two counts
     const scree_real k_t = a->contacts.tangential_stiffness[c];
@@ -101,11 +137,7 @@ SCREE_FN void scree_work_of_contact(const scree_work_args *a, int64_t c, scree_w
 SCREE_FN void scree_work_at(scree_work_args a, int64_t b)
 {
     scree_work_sums sums;
-    sums.damping = 0;
-    sums.friction = 0;
-    sums.hysteresis = 0;
-    sums.input = 0;
-    sums.smallest_step_squared = SCREE_REAL_MAX;
+    scree_work_begin(&sums);
     const int64_t begin = b * SCREE_WORK_BLOCK;
     int64_t end = begin + SCREE_WORK_BLOCK;
     if (end > a.contacts.num_contacts) end = a.contacts.num_contacts;

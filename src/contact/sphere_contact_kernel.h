@@ -39,15 +39,23 @@ SCREE_FN bool scree_spheres_touch(scree_vec3 between, scree_real sum_of_radii)
     return (sum_of_radii - scree_sqrt(squared) > 0) & (squared > 0);
 }
 
+/// Contact of two spheres that touch.
+SCREE_FN scree_sphere_contact scree_touching_spheres_contact(scree_vec3 between, scree_real sum_of_radii)
+{
+    const scree_real distance = scree_vec3_length(between);
+    scree_sphere_contact contact;
+    contact.normal = scree_vec3_scale(between, 1 / distance);
+    contact.indentation = sum_of_radii - distance;
+    contact.weight = 1;
+    contact.rank = 0;
+    contact.sphere = 0;
+    return contact;
+}
+
 SCREE_FN bool scree_sphere_sphere_contact(scree_vec3 between, scree_real sum_of_radii, scree_sphere_contact *contact)
 {
     if (!scree_spheres_touch(between, sum_of_radii)) return false;
-    const scree_real distance = scree_vec3_length(between);
-    contact->normal = scree_vec3_scale(between, 1 / distance);
-    contact->indentation = sum_of_radii - distance;
-    contact->weight = 1;
-    contact->rank = 0;
-    contact->sphere = 0;
+    *contact = scree_touching_spheres_contact(between, sum_of_radii);
     return true;
 }
 

@@ -77,22 +77,46 @@ SCREE_FN void scree_write_point(scree_contact_list list, int64_t c)
     list.torque_vector[c] = scree_vec3_zero();
 }
 
+/// Geometry of the contact of two spheres that touch.
+typedef struct scree_sphere_pair_geometry
+{
+    scree_vec3 normal, arm;
+    scree_real volume, indentation;
+} scree_sphere_pair_geometry;
+
+SCREE_FN scree_sphere_pair_geometry scree_touching_pair(scree_sphere i, scree_sphere j)
+{
+    const scree_sphere_contact contact =
+        scree_touching_spheres_contact(scree_vec3_sub(i.centre, j.centre), i.radius + j.radius);
+    const scree_real effective_radius = i.radius * j.radius / (i.radius + j.radius);
+    scree_sphere_pair_geometry g;
+    g.normal = contact.normal;
+    g.arm = scree_vec3_scale(contact.normal, contact.indentation / 2 - i.radius);
+    g.volume = scree_sphere_contact_volume(effective_radius, contact.indentation, 1);
+    g.indentation = contact.indentation;
+    return g;
+}
+
+/// To the place of candidate pair p.
+SCREE_FN void scree_write_sphere_pair(scree_contact_list list, int32_t p, scree_candidate_pair pair,
+                                      scree_sphere_pair_geometry g)
+{
+    const int64_t c = list.first_of_pair[p];
+    list.bodies[c] = pair;
+    list.patch[c] = 0;
+    list.volume[c] = g.volume;
+    list.indentation[c] = g.indentation;
+    list.normal[c] = g.normal;
+    list.arm[c] = g.arm;
+    scree_write_point(list, c);
+}
+
 SCREE_FN void scree_sphere_sphere_write_at(scree_sphere_sphere_write_args a, int64_t b)
 {
     const int32_t p = a.batch[b];
+    if (a.list.first_of_pair[p + 1] == a.list.first_of_pair[p]) return;
     const scree_candidate_pair pair = a.pairs[p];
-    const scree_sphere i = a.spheres[pair.i], j = a.spheres[pair.j];
-    scree_sphere_contact contact;
-    if (!scree_sphere_sphere_contact(scree_vec3_sub(i.centre, j.centre), i.radius + j.radius, &contact)) return;
-    const int64_t c = a.list.first_of_pair[p];
-    const scree_real effective_radius = i.radius * j.radius / (i.radius + j.radius);
-    a.list.bodies[c] = pair;
-    a.list.patch[c] = 0;
-    a.list.volume[c] = scree_sphere_contact_volume(effective_radius, contact.indentation, 1);
-    a.list.indentation[c] = contact.indentation;
-    a.list.normal[c] = contact.normal;
-    a.list.arm[c] = scree_vec3_scale(contact.normal, contact.indentation / 2 - i.radius);
-    scree_write_point(a.list, c);
+    scree_write_sphere_pair(a.list, p, pair, scree_touching_pair(a.spheres[pair.i], a.spheres[pair.j]));
 }
 
 /// Sphere k of a posed body, its centre measured from the body's position along the world axes; `rotation` is that of

@@ -22,6 +22,14 @@ typedef struct scree_predict_args
     scree_vec3 *angular_velocity; ///< (num_particles) out: likewise
 } scree_predict_args;
 
+/// The Cayley map: (1 + a)(1 - a)^-1 q = (1 - |a|^2 + 2 a)/(1 + |a|^2) q; normalising takes care of the denominator
+/// and of rounding.
+SCREE_FN scree_quat scree_turned(scree_quat q, scree_vec3 a)
+{
+    const scree_quat turn = scree_quat_make(1 - scree_vec3_dot(a, a), 2 * a.x, 2 * a.y, 2 * a.z);
+    return scree_quat_normalize(scree_quat_multiply(turn, q));
+}
+
 /// Orientation after dt of free rotation.
 SCREE_FN scree_quat scree_rotate(scree_quat q, scree_vec3 angular_momentum, scree_vec3 inertia, scree_real dt)
 {
@@ -39,9 +47,7 @@ SCREE_FN scree_quat scree_rotate(scree_quat q, scree_vec3 angular_momentum, scre
         if (scree_vec3_dot(change, change) <= 16 * SCREE_REAL_EPSILON * SCREE_REAL_EPSILON * scree_vec3_dot(a, a))
             break;
     }
-    // (1 + a)(1 - a)^-1 = (1 - |a|^2 + 2 a)/(1 + |a|^2); normalising takes care of the denominator and of rounding
-    const scree_quat turn = scree_quat_make(1 - scree_vec3_dot(a, a), 2 * a.x, 2 * a.y, 2 * a.z);
-    return scree_quat_normalize(scree_quat_multiply(turn, q));
+    return scree_turned(q, a);
 }
 
 /// First half kick, then drift, of particle i.
@@ -53,7 +59,23 @@ SCREE_FN void scree_predict_at(scree_predict_args a, int64_t i)
     const scree_vec3 velocity = scree_vec3_add_scaled(a.particles.velocity[i], force, half_over_mass);
     const scree_vec3 momentum = scree_vec3_add_scaled(a.particles.angular_momentum[i], torque, half);
     const scree_vec3 position = scree_vec3_add_scaled(a.particles.position[i], velocity, dt);
-    const scree_quat orientation = scree_rotate(a.particles.orientation[i], momentum, a.particles.inertia[i], dt);
+    const scree_vec3 end_momentum = scree_vec3_add_scaled(momentum, torque, half);
+    const scree_vec3 inertia = a.particles.inertia[i];
+    scree_quat orientation;
+    scree_vec3 angular_velocity;
+    if (scree_is_isotropic(inertia))
+    {
+        // as below, but one quotient and no matrices
+        const scree_real inverse = 1 / inertia.x;
+        const scree_vec3 turning = scree_vec3_scale(momentum, inverse);
+        orientation = scree_turned(a.particles.orientation[i], scree_vec3_scale(turning, dt * (scree_real)0.25));
+        angular_velocity = scree_vec3_scale(end_momentum, inverse);
+    }
+    else
+    {
+        orientation = scree_rotate(a.particles.orientation[i], momentum, inertia, dt);
+        angular_velocity = scree_angular_velocity(end_momentum, inertia, orientation);
+    }
     a.particles.velocity[i] = velocity;
     a.particles.angular_momentum[i] = momentum;
     a.particles.position[i] = position;
@@ -64,8 +86,7 @@ SCREE_FN void scree_predict_at(scree_predict_args a, int64_t i)
     a.pose[i].orientation = orientation;
     a.pose[i].scale = a.particles.scale[i];
     a.velocity[i] = scree_vec3_add_scaled(velocity, force, half_over_mass);
-    a.angular_velocity[i] =
-        scree_angular_velocity(scree_vec3_add_scaled(momentum, torque, half), a.particles.inertia[i], orientation);
+    a.angular_velocity[i] = angular_velocity;
 }
 
 typedef struct scree_correct_args

@@ -2,7 +2,7 @@
 /// Forces of contacts on the CPU. Contacts that act in points and share a law without rolling resistance, the usual
 /// ones of spheres, are worked on in groups of lanes (lanes.h); all others one by one.
 #include "forces/forces.h"
-#include "forces/lanes.h"
+#include "core/lanes.h"
 
 SCREE_DEFINE_LAUNCH_ON(scree_contact_force)
 

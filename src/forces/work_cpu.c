@@ -2,7 +2,7 @@
 /// Work of the contacts on the CPU. Those that act in points are worked on in groups of lanes (lanes.h), and then added
 /// up one by one, in their order.
 #include "forces/forces.h"
-#include "forces/lanes.h"
+#include "core/lanes.h"
 
 SCREE_DEFINE_LAUNCH_ON(scree_work)
 

@@ -15,7 +15,7 @@
 #define SCREE_LANES_FUNCTION __attribute__((flatten))
 #endif
 
-/// Contacts of a group.
+/// Items of a group.
 enum
 {
     SCREE_LANES = 8

@@ -1,8 +1,8 @@
 /// \file contact_force_cpu.c
 /// Forces of contacts on the CPU. Contacts that act in points and share a law without rolling resistance, the usual
 /// ones of spheres, are worked on in groups of lanes (lanes.h); all others one by one.
-#include "forces/forces.h"
 #include "core/lanes.h"
+#include "forces/forces.h"
 
 SCREE_DEFINE_LAUNCH_ON(scree_contact_force)
 

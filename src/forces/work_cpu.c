@@ -1,8 +1,8 @@
 /// \file work_cpu.c
 /// Work of the contacts on the CPU. Those that act in points are worked on in groups of lanes (lanes.h), and then added
 /// up one by one, in their order.
-#include "forces/forces.h"
 #include "core/lanes.h"
+#include "forces/forces.h"
 
 SCREE_DEFINE_LAUNCH_ON(scree_work)
 

@@ -8,17 +8,6 @@
 
 #include "contact/overlap_crossings_kernel.h"
 
-/// The planes of a body's kept faces; one bit of a word for each.
-#define SCREE_MAX_PLANES 64
-typedef struct scree_convex_planes
-{
-    scree_vec3 normal[SCREE_MAX_PLANES];
-    scree_real offset[SCREE_MAX_PLANES];
-    scree_real margin[SCREE_MAX_PLANES]; ///< heights above this are certain
-    int32_t triangle[SCREE_MAX_PLANES];  ///< kept triangle that stands for the face
-    int32_t num;
-} scree_convex_planes;
-
 /// Joins kept triangles to flat faces and lists their planes. False if there are too many.
 SCREE_FN bool scree_convex_join_faces(scree_overlap_body *body, const scree_shape_view *shape, scree_real tolerance,
                                       scree_convex_planes *planes)
@@ -214,7 +203,7 @@ SCREE_FN bool scree_convex_clip_edge(scree_overlap_slice *slice, int32_t is_of_b
 /// Segments, crossings and inside counts of two convex bodies. False if the general path has to find them.
 SCREE_FN bool scree_convex_collect(scree_overlap_slice *slice, const scree_shape_view *const *shape)
 {
-    scree_convex_planes planes[2];
+    scree_convex_planes *planes = slice->planes;
     slice->num_crossings = 0;
     slice->num_segments = 0;
     slice->is_closed = true;

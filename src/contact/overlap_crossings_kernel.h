@@ -74,10 +74,12 @@ SCREE_FN int32_t scree_overlap_find_crossing(const scree_overlap_slice *slice, c
 }
 
 /// Ties each segment to the crossings at its ends. Every crossing ends two segments, one in each triangle of its edge.
-SCREE_FN void scree_overlap_tie_segments(scree_overlap_slice *slice, const scree_shape_view *const *shape)
+SCREE_FN void scree_overlap_tie_segments(const scree_team *team, scree_overlap_slice *slice,
+                                         const scree_shape_view *const *shape)
 {
     int32_t num_tied = 0;
-    for (int32_t s = 0; s < slice->num_segments; ++s)
+    bool is_tied = true;
+    for (int32_t s = scree_team_lane(team); s < slice->num_segments; s += scree_team_size(team))
     {
         scree_overlap_segment *segment = slice->segments + s;
         for (int32_t end = 0; end < 2; ++end)
@@ -86,9 +88,11 @@ SCREE_FN void scree_overlap_tie_segments(scree_overlap_slice *slice, const scree
             segment->end[end] = scree_overlap_find_crossing(slice, shape, segment, ~segment->end[end]);
             num_tied += segment->end[end] >= 0;
         }
-        if (segment->end[0] < 0 || segment->end[1] < 0) slice->is_closed = false;
+        if (segment->end[0] < 0 || segment->end[1] < 0) is_tied = false;
     }
-    if (num_tied != slice->num_crossings) slice->is_closed = false;
+    is_tied = !scree_team_any(team, !is_tied) && scree_team_sum(team, num_tied) == slice->num_crossings;
+    if (scree_team_leads(team)) slice->is_closed = slice->is_closed && is_tied;
+    scree_team_sync(team);
 }
 
 /// Does side k of face `own`, of body `is_of_b`, pass through face `other`? +1 where the side, running up its vertex
@@ -141,29 +145,87 @@ SCREE_FN bool scree_overlap_meet_by_sides(scree_overlap_slice *slice, int32_t tr
     return true;
 }
 
-/// Two triangles whose boxes overlap. False if there are too many crossings.
-SCREE_FN bool scree_overlap_meet(scree_overlap_slice *slice, int32_t triangle_a, int32_t triangle_b)
+/// What is said of two triangles, both finished, whose boxes overlap.
+SCREE_FN scree_meet_verdict scree_overlap_judge(const scree_overlap_slice *slice, int32_t triangle_a,
+                                                int32_t triangle_b, scree_segment_end *p, scree_segment_end *q)
 {
-    const scree_face *f = &scree_overlap_finish(slice->body, triangle_a)->face;
-    const scree_face *g = &scree_overlap_finish(slice->body + 1, triangle_b)->face;
-    if (slice->sign_tolerance > 0)
-    {
-        scree_segment_end p, q;
-        const scree_meet_verdict verdict = scree_faces_meet(f, g, slice->sign_tolerance, &p, &q);
-        if (verdict == SCREE_MEET_APART) return true;
-        if (verdict == SCREE_MEET_SEGMENT) return scree_overlap_add_segment(slice, triangle_a, triangle_b, &p, &q);
-    }
+    if (!(slice->sign_tolerance > 0)) return SCREE_MEET_UNSURE;
+    return scree_faces_meet(&slice->body[0].triangles[triangle_a].face, &slice->body[1].triangles[triangle_b].face,
+                            slice->sign_tolerance, p, q);
+}
+
+/// And what follows from it. False if there are too many crossings.
+SCREE_FN bool scree_overlap_act_on(scree_overlap_slice *slice, scree_meet_verdict verdict, int32_t triangle_a,
+                                   int32_t triangle_b, const scree_segment_end *p, const scree_segment_end *q)
+{
+    if (verdict == SCREE_MEET_APART) return true;
+    if (verdict == SCREE_MEET_SEGMENT) return scree_overlap_add_segment(slice, triangle_a, triangle_b, p, q);
     return scree_overlap_meet_by_sides(slice, triangle_a, triangle_b);
 }
 
-/// All segments. False if there are too many.
+/// Segments of listed pairs of triangles: all are judged at once, and what follows is done in turns, in their order.
+SCREE_FN bool scree_overlap_meet_listed(const scree_team *team, scree_overlap_slice *slice,
+                                        const scree_overlap_link *pairs, int32_t num)
+{
+    for (int32_t begin = 0; begin < num; begin += scree_team_size(team))
+    {
+        const int32_t i = begin + scree_team_lane(team);
+        const int32_t f = pairs[i < num ? i : begin].v[0];
+        const int32_t g = pairs[i < num ? i : begin].v[1];
+        scree_segment_end p, q;
+        const scree_meet_verdict verdict = i < num ? scree_overlap_judge(slice, f, g, &p, &q) : SCREE_MEET_APART;
+        bool has_room = true;
+        for (uint64_t turns = scree_team_ballot(team, verdict != SCREE_MEET_APART); turns != 0; turns &= turns - 1)
+        {
+            if (scree_lowest_bit(turns) == scree_team_lane(team))
+                has_room = scree_overlap_act_on(slice, verdict, f, g, &p, &q);
+            scree_team_sync(team);
+        }
+        if (scree_team_any(team, !has_room)) return false;
+    }
+    return true;
+}
+
+/// All segments, by a team of several lanes: pairs whose boxes overlap are listed in their order, where the links will
+/// be, and judged whenever the list is full. False if there are too many.
+SCREE_FN bool scree_overlap_find_segments_together(const scree_team *team, scree_overlap_slice *slice)
+{
+    const scree_overlap_body *a = slice->body;
+    const scree_overlap_body *b = slice->body + 1;
+    scree_overlap_link *pairs = slice->body[0].links;
+    const int32_t num_a = a->num_triangles;
+    int32_t num_listed = 0;
+    for (int32_t first = 0; first < b->num_triangles; first += SCREE_INDEX_MAX)
+    {
+        const int32_t rest = b->num_triangles - first;
+        const int32_t num_b = rest < SCREE_INDEX_MAX ? rest : SCREE_INDEX_MAX;
+        for (int32_t begin = 0; begin < num_a * num_b; begin += scree_team_size(team))
+        {
+            const int32_t i = begin + scree_team_lane(team);
+            const int32_t f = i < num_a * num_b ? i / num_b : 0;
+            const int32_t g = first + (i < num_a * num_b ? i % num_b : 0);
+            const bool is_listed = i < num_a * num_b && scree_box_meets(a->triangle_boxes + f, b->triangle_boxes + g);
+            const int32_t place = scree_team_place(team, is_listed, &num_listed);
+            if (is_listed)
+            {
+                pairs[place].v[0] = f;
+                pairs[place].v[1] = g;
+            }
+            if (num_listed + scree_team_size(team) <= 2 * a->max_triangles) continue;
+            scree_team_sync(team);
+            if (!scree_overlap_meet_listed(team, slice, pairs, num_listed)) return false;
+            num_listed = 0;
+        }
+    }
+    scree_team_sync(team);
+    return scree_overlap_meet_listed(team, slice, pairs, num_listed);
+}
+
+/// All segments, by one lane. False if there are too many.
 SCREE_FN bool scree_overlap_find_segments(scree_overlap_slice *slice)
 {
     const scree_overlap_body *a = slice->body;
     const scree_overlap_body *b = slice->body + 1;
-    slice->num_crossings = 0;
-    slice->num_segments = 0;
-    slice->is_closed = true;
     for (int32_t begin = 0; begin < b->num_triangles; begin += SCREE_INDEX_MAX)
     {
         const int32_t rest = b->num_triangles - begin;
@@ -178,7 +240,9 @@ SCREE_FN bool scree_overlap_find_segments(scree_overlap_slice *slice)
                 const int32_t g = begin + scree_lowest_bit(candidates);
                 if (num > SCREE_INDEX_DIRECT && !scree_box_meets(a->triangle_boxes + f, b->triangle_boxes + g))
                     continue;
-                if (!scree_overlap_meet(slice, f, g)) return false;
+                scree_segment_end p, q;
+                const scree_meet_verdict verdict = scree_overlap_judge(slice, f, g, &p, &q);
+                if (!scree_overlap_act_on(slice, verdict, f, g, &p, &q)) return false;
             }
         }
     }
@@ -289,17 +353,35 @@ SCREE_FN void scree_overlap_find_inside(scree_overlap_slice *slice, int32_t side
 }
 
 /// Segments, crossings and inside counts of both bodies. False if there are too many crossings.
-SCREE_FN bool scree_overlap_collect(scree_overlap_slice *slice, const scree_shape_view *const *shape)
+SCREE_FN bool scree_overlap_collect(const scree_team *team, scree_overlap_slice *slice,
+                                    const scree_shape_view *const *shape)
 {
-    for (int32_t side = 0; side < 2; ++side)
-        for (int32_t t = 0; t < slice->body[side].num_triangles; ++t) scree_overlap_finish(slice->body + side, t);
-    if (!scree_overlap_find_segments(slice))
+    if (scree_team_leads(team))
     {
-        slice->lack = SCREE_LACK_CROSSINGS;
+        slice->num_crossings = 0;
+        slice->num_segments = 0;
+        slice->is_closed = true;
+    }
+    for (int32_t side = 0; side < 2; ++side)
+        for (int32_t t = scree_team_lane(team); t < slice->body[side].num_triangles; t += scree_team_size(team))
+            scree_overlap_finish(slice->body + side, t);
+    scree_team_sync(team);
+#ifdef SCREE_TEAM_OF_MANY
+    const bool has_room = scree_overlap_find_segments_together(team, slice);
+#else
+    const bool has_room = scree_overlap_find_segments(slice);
+#endif
+    scree_team_sync(team);
+    if (!has_room)
+    {
+        if (scree_team_leads(team)) slice->lack = SCREE_LACK_CROSSINGS;
+        scree_team_sync(team);
         return false;
     }
-    scree_overlap_tie_segments(slice, shape);
-    for (int32_t side = 0; side < 2; ++side) scree_overlap_find_inside(slice, side);
+    scree_overlap_tie_segments(team, slice, shape);
+    if (scree_team_leads(team))
+        for (int32_t side = 0; side < 2; ++side) scree_overlap_find_inside(slice, side);
+    scree_team_sync(team);
     return true;
 }
 

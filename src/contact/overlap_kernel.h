@@ -90,22 +90,24 @@ SCREE_FN bool scree_overlap_set_up(const scree_overlap_pair *pair, scree_overlap
 }
 
 /// How far a body reaches along a direction, or a little more; loads its vertices unless it uses its tree.
-SCREE_FN scree_real scree_overlap_load(scree_overlap_body *body, const scree_posed_shape *posed, scree_vec3 direction)
+SCREE_FN scree_real scree_overlap_load(const scree_team *team, scree_overlap_body *body, const scree_posed_shape *posed,
+                                       scree_vec3 direction)
 {
-    if (!scree_filter_uses_tree(posed->shape)) return scree_filter_load_all(body, posed, direction);
+    if (!scree_filter_uses_tree(posed->shape)) return scree_filter_load_all(team, body, posed, direction);
     const scree_vec3 turned = scree_mat3_apply_transposed(posed->rows, direction);
     const scree_real reach = scree_support_bound(posed->shape->support_map, turned, posed->shape->bounding_radius);
     return reach + scree_vec3_dot(direction, posed->offset);
 }
 
 /// Half-spaces: how far A reaches along the direction, and how far B reaches back. False if they are apart.
-SCREE_FN bool scree_overlap_half_spaces(scree_overlap_slice *slice, const scree_overlap_setup *setup,
-                                        scree_filter_region *region)
+SCREE_FN bool scree_overlap_half_spaces(const scree_team *team, scree_overlap_slice *slice,
+                                        const scree_overlap_setup *setup, scree_filter_region *region)
 {
     const scree_vec3 d = setup->direction;
     const scree_real size = scree_max(scree_box_reach(setup->box[0]), scree_box_reach(setup->box[1]));
     const scree_real rounding = 64 * SCREE_REAL_EPSILON * size * (scree_abs(d.x) + scree_abs(d.y) + scree_abs(d.z));
-    slice->tolerance = SCREE_SIGN_MARGIN * SCREE_REAL_EPSILON * size;
+    if (scree_team_leads(team)) slice->tolerance = SCREE_SIGN_MARGIN * SCREE_REAL_EPSILON * size;
+    scree_team_sync(team);
     region[0].direction = scree_vec3_negate(d);
     region[0].is_of_a = true;
     region[1].direction = d;
@@ -113,60 +115,69 @@ SCREE_FN bool scree_overlap_half_spaces(scree_overlap_slice *slice, const scree_
     for (int32_t side = 0; side < 2; ++side)
     {
         const int32_t other = 1 - side;
-        const scree_real reach = scree_overlap_load(slice->body + other, setup->posed + other, region[side].direction);
+        const scree_real reach =
+            scree_overlap_load(team, slice->body + other, setup->posed + other, region[side].direction);
         region[side].reach = reach + rounding;
     }
     return region[0].reach + region[1].reach >= 0;
 }
 
 /// Keeps the triangles of one body that reach into the region. False: none, or slice->lack is set.
-SCREE_FN bool scree_overlap_keep(scree_overlap_slice *slice, int32_t side, const scree_overlap_setup *setup,
-                                 const scree_filter_region *region)
+SCREE_FN bool scree_overlap_keep(const scree_team *team, scree_overlap_slice *slice, int32_t side,
+                                 const scree_overlap_setup *setup, const scree_filter_region *region)
 {
     scree_overlap_body *body = slice->body + side;
     const scree_posed_shape *posed = setup->posed + side;
-    if (!scree_filter_uses_tree(posed->shape))
+    if (!scree_filter_uses_tree(posed->shape)) scree_filter_all(team, body, posed->shape, region->reach);
+    else
     {
-        // what was loaded is the distance along the direction of the other's half-space, which is opposite
-        for (int32_t v = 0; v < body->num_vertices; ++v) body->vertices[v].depth += region->reach;
-        scree_filter_all(body, posed->shape);
+        // places of vertices are given as they are found: one lane
+        bool has_room = true;
+        if (scree_team_leads(team)) has_room = scree_filter_tree(body, posed, region, setup->box[side]);
+        if (scree_team_any(team, !has_room))
+        {
+            if (scree_team_leads(team)) slice->lack = SCREE_LACK_PIECES;
+            scree_team_sync(team);
+            return false;
+        }
+        scree_team_sync(team);
     }
-    else if (!scree_filter_tree(body, posed, region, setup->box[side]))
-    {
-        slice->lack = SCREE_LACK_PIECES;
-        return false;
-    }
-    scree_filter_clip(body, region, slice->tolerance);
+    scree_filter_clip(team, body, region, slice->tolerance);
     return body->num_triangles > 0;
 }
 
 /// Kept triangles of both. False: none of one body, or slice->lack is set.
-SCREE_FN bool scree_overlap_filter(scree_overlap_slice *slice, const scree_overlap_setup *setup)
+SCREE_FN bool scree_overlap_filter(const scree_team *team, scree_overlap_slice *slice, const scree_overlap_setup *setup)
 {
-    for (int32_t side = 0; side < 2; ++side)
-        if (!scree_filter_has_room(slice, side, setup->posed[side].shape)) return false;
+    if (scree_team_leads(team))
+        for (int32_t side = 0; side < 2; ++side) scree_filter_check_room(slice, side, setup->posed[side].shape);
+    scree_team_sync(team);
+    if (slice->lack != SCREE_LACK_NOTHING) return false;
     scree_filter_region region[2];
-    if (!scree_overlap_half_spaces(slice, setup, region)) return false;
+    if (!scree_overlap_half_spaces(team, slice, setup, region)) return false;
 
     // B against A's box, A against what was kept of B, and B again against what was kept of A
     region[1].box = setup->box[0];
-    if (!scree_overlap_keep(slice, 1, setup, region + 1)) return false;
+    if (!scree_overlap_keep(team, slice, 1, setup, region + 1)) return false;
     region[0].box = slice->body[1].box;
-    if (!scree_overlap_keep(slice, 0, setup, region)) return false;
+    if (!scree_overlap_keep(team, slice, 0, setup, region)) return false;
     region[1].box = slice->body[0].box;
-    scree_filter_again(slice->body + 1, region + 1);
+    scree_filter_again(team, slice->body + 1, region + 1);
     return slice->body[1].num_triangles > 0;
 }
 
 /// Triangles ready for the tests of a scheme.
-SCREE_FN void scree_overlap_prepare(scree_overlap_slice *slice, scree_overlap_scheme scheme)
+SCREE_FN void scree_overlap_prepare(const scree_team *team, scree_overlap_slice *slice, scree_overlap_scheme scheme)
 {
-    slice->sign_tolerance = scheme == SCREE_OVERLAP_FILTERED ? slice->tolerance : 0;
-    const scree_box a = slice->body[0].box;
-    const scree_box b = slice->body[1].box;
-    slice->common.lower = scree_vec3_max(a.lower, b.lower);
-    slice->common.upper = scree_vec3_min(a.upper, b.upper);
-    for (int32_t side = 0; side < 2; ++side) scree_filter_enter(slice->body + side);
+    if (scree_team_leads(team))
+    {
+        slice->sign_tolerance = scheme == SCREE_OVERLAP_FILTERED ? slice->tolerance : 0;
+        const scree_box a = slice->body[0].box;
+        const scree_box b = slice->body[1].box;
+        slice->common.lower = scree_vec3_max(a.lower, b.lower);
+        slice->common.upper = scree_vec3_min(a.upper, b.upper);
+    }
+    for (int32_t side = 0; side < 2; ++side) scree_filter_enter(team, slice->body + side);
 }
 
 SCREE_FN scree_overlap_result scree_overlap_nothing(scree_overlap_status status)
@@ -234,63 +245,88 @@ SCREE_FN scree_overlap_result scree_overlap_to_world(const scree_overlap_slice *
 
 /// Kept triangles, crossings and sums of all, by the default scheme and once more by the hierarchy if its certificate
 /// says so. The status is TOUCHING if there is something, whatever it is.
-SCREE_FN scree_overlap_status scree_overlap_find(const scree_overlap_pair *pair, const scree_overlap_options *options,
-                                                 scree_overlap_slice *slice, scree_overlap_setup *setup,
-                                                 scree_overlap_sums *sums, bool *used_fallback)
+SCREE_FN scree_overlap_status scree_overlap_find(const scree_team *team, const scree_overlap_pair *pair,
+                                                 const scree_overlap_options *options, scree_overlap_slice *slice,
+                                                 scree_overlap_setup *setup, bool *used_fallback)
 {
-    slice->lack = SCREE_LACK_NOTHING;
+    scree_team_sync(team);
+    if (scree_team_leads(team)) slice->lack = SCREE_LACK_NOTHING;
     *used_fallback = false;
     if (scree_overlap_spheres_apart(pair) || !scree_overlap_set_up(pair, setup)) return SCREE_OVERLAP_NONE;
-    if (!scree_overlap_filter(slice, setup))
+    if (!scree_overlap_filter(team, slice, setup))
         return slice->lack != SCREE_LACK_NOTHING ? SCREE_OVERLAP_WORKSPACE_FULL : SCREE_OVERLAP_NONE;
     const bool is_convex = options->use_convex_path && pair->shape[0]->is_convex && pair->shape[1]->is_convex;
     scree_overlap_scheme scheme = options->scheme;
     for (;;)
     {
-        scree_overlap_prepare(slice, scheme);
-        const bool is_simple =
-            is_convex && scheme == SCREE_OVERLAP_FILTERED && scree_convex_collect(slice, pair->shape);
-        if (is_convex && !is_simple) scree_overlap_prepare(slice, scheme);
-        if (!is_simple && !scree_overlap_collect(slice, pair->shape)) return SCREE_OVERLAP_WORKSPACE_FULL;
-        slice->num_patches = 1;
-        scree_overlap_sum(slice, pair->shape, 0, sums);
-        if (!slice->is_closed) sums->residual = scree_max(sums->residual, 1);
-        if (scheme == SCREE_OVERLAP_HIERARCHY || sums->residual <= SCREE_RESIDUAL_LIMIT) return SCREE_OVERLAP_TOUCHING;
+        scree_overlap_prepare(team, slice, scheme);
+        bool is_simple = is_convex && scheme == SCREE_OVERLAP_FILTERED;
+        if (is_simple)
+        {
+            if (scree_team_leads(team)) is_simple = scree_convex_collect(slice, pair->shape);
+            is_simple = !scree_team_any(team, !is_simple);
+            scree_team_sync(team);
+            if (!is_simple) scree_overlap_prepare(team, slice, scheme);
+        }
+        if (!is_simple && !scree_overlap_collect(team, slice, pair->shape)) return SCREE_OVERLAP_WORKSPACE_FULL;
+        if (scree_team_leads(team)) slice->num_patches = 1;
+        scree_overlap_sum(team, slice, pair->shape, 0, &slice->sums);
+        if (scree_team_leads(team) && !slice->is_closed) slice->sums.residual = scree_max(slice->sums.residual, 1);
+        scree_team_sync(team);
+        if (scheme == SCREE_OVERLAP_HIERARCHY || slice->sums.residual <= SCREE_RESIDUAL_LIMIT)
+            return SCREE_OVERLAP_TOUCHING;
+        scree_team_sync(team);
         scheme = SCREE_OVERLAP_HIERARCHY;
         *used_fallback = true;
     }
 }
 
-/// Overlap of a pair: one result, or one per patch, of which the first max_results are written. Returns their number.
-SCREE_FN int32_t scree_overlap_pair_compute(const scree_overlap_pair *pair, const scree_overlap_options *options,
-                                            scree_overlap_slice *slice, scree_overlap_result *results,
-                                            int32_t max_results)
+/// Results of the patches, one after the other; the first max_results are written. Returns their number. Of one lane.
+SCREE_FN int32_t scree_overlap_patch_results(const scree_overlap_pair *pair, scree_overlap_slice *slice,
+                                             const scree_overlap_setup *setup, scree_overlap_result *results,
+                                             int32_t max_results)
 {
-    scree_overlap_setup setup;
-    scree_overlap_sums sums;
-    bool used_fallback;
-    const scree_overlap_status status = scree_overlap_find(pair, options, slice, &setup, &sums, &used_fallback);
-    results[0] = scree_overlap_nothing(status);
-    if (status != SCREE_OVERLAP_TOUCHING) return 1;
-    const int32_t num_patches = options->separate_patches ? scree_overlap_find_patches(slice, pair->shape) : 1;
-    if (num_patches <= 1)
-    {
-        results[0] = scree_overlap_to_world(slice, &setup, &sums, pair->pose[0]);
-        results[0].used_fallback = used_fallback;
-        return 1;
-    }
+    const scree_team team = scree_team_alone();
     int32_t num = 0;
-    for (int32_t patch = 0; patch < num_patches; ++patch)
+    for (int32_t patch = 0; patch < slice->num_patches; ++patch)
     {
-        scree_overlap_sum(slice, pair->shape, patch, &sums);
-        scree_overlap_result result = scree_overlap_to_world(slice, &setup, &sums, pair->pose[0]);
-        result.used_fallback = used_fallback;
+        scree_overlap_sum(&team, slice, pair->shape, patch, &slice->sums);
+        const scree_overlap_result result = scree_overlap_to_world(slice, setup, &slice->sums, pair->pose[0]);
         // pieces without volume are noise
-        if (result.status == SCREE_OVERLAP_NONE && num + num_patches - patch > 1) continue;
+        if (result.status == SCREE_OVERLAP_NONE && num + slice->num_patches - patch > 1) continue;
         if (num < max_results) results[num] = result;
         ++num;
     }
     return num;
+}
+
+/// Overlap of a pair: one result, or one per patch, of which the first max_results are written. Returns their number,
+/// to lane 0. Filter, pairs of triangles and sums over segments are shared among the lanes; the walk over a tree, the
+/// convex path, inside counts, sums over edges of one body, patches and results are lane 0's.
+SCREE_FN int32_t scree_overlap_team_compute(const scree_team *team, const scree_overlap_pair *pair,
+                                            const scree_overlap_options *options, scree_overlap_slice *slice,
+                                            scree_overlap_result *results, int32_t max_results)
+{
+    scree_overlap_setup setup;
+    bool used_fallback;
+    const scree_overlap_status status = scree_overlap_find(team, pair, options, slice, &setup, &used_fallback);
+    if (!scree_team_leads(team)) return 1;
+    results[0] = scree_overlap_nothing(status);
+    if (status != SCREE_OVERLAP_TOUCHING) return 1;
+    int32_t num = 1;
+    if (options->separate_patches && scree_overlap_find_patches(slice, pair->shape) > 1)
+        num = scree_overlap_patch_results(pair, slice, &setup, results, max_results);
+    else results[0] = scree_overlap_to_world(slice, &setup, &slice->sums, pair->pose[0]);
+    for (int32_t i = 0; i < num && i < max_results; ++i) results[i].used_fallback = used_fallback;
+    return num;
+}
+
+SCREE_FN int32_t scree_overlap_pair_compute(const scree_overlap_pair *pair, const scree_overlap_options *options,
+                                            scree_overlap_slice *slice, scree_overlap_result *results,
+                                            int32_t max_results)
+{
+    const scree_team team = scree_team_alone();
+    return scree_overlap_team_compute(&team, pair, options, slice, results, max_results);
 }
 
 #endif

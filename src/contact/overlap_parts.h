@@ -84,6 +84,31 @@ typedef struct scree_overlap_segment
     int32_t end[2]; ///< crossings; while < 0, ~(side + 4 is_of_b): entered from the other triangle of its edge
 } scree_overlap_segment;
 
+/// The planes of a body's kept faces; one bit of a word for each.
+#define SCREE_MAX_PLANES 64
+typedef struct scree_convex_planes
+{
+    scree_vec3 normal[SCREE_MAX_PLANES];
+    scree_real offset[SCREE_MAX_PLANES];
+    scree_real margin[SCREE_MAX_PLANES]; ///< heights above this are certain
+    int32_t triangle[SCREE_MAX_PLANES];  ///< kept triangle that stands for the face
+    int32_t num;
+} scree_convex_planes;
+
+/// The sums over the edges of the overlap solid, see overlap_sums_kernel.h.
+typedef struct scree_overlap_sums
+{
+    scree_vec3 middle; ///< C
+    scree_box box;     ///< of all collected points
+    scree_real six_volume;
+    scree_real lost;        ///< what rounding has taken from six_volume so far, until it is added at the end
+    scree_vec3 moment;      ///< 24 times the first moment about C
+    scree_vec3 area_vector; ///< twice S
+    scree_vec3 torque;      ///< -6 times the integral of x cross n over the part of A's surface, x from C
+    scree_real residual;
+    scree_real area; ///< of the overlap's surface
+} scree_overlap_sums;
+
 /// Which capacity was too small.
 typedef enum scree_overlap_lack
 {
@@ -109,6 +134,8 @@ typedef struct scree_overlap_slice
     scree_box common;          ///< of the two boxes of kept triangles
     scree_real tolerance;      ///< 64 eps L, L the largest coordinate in play
     scree_real sign_tolerance; ///< the same, or 0: hierarchy throughout
+    scree_overlap_sums sums;
+    scree_convex_planes planes[2]; ///< of the convex path
 } scree_overlap_slice;
 
 #endif

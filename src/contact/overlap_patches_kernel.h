@@ -233,7 +233,8 @@ SCREE_FN void scree_patch_sum(scree_overlap_slice *slice, const scree_shape_view
     for (int32_t number = 0; number < scree_patch_num_corners(slice); ++number)
         if (scree_patch_is_corner(slice, number)) *scree_patch_parent(slice, number) = scree_patch_root(slice, number);
     slice->num_patches = 2;
-    scree_overlap_sum(slice, shape, root, sums);
+    const scree_team team = scree_team_alone();
+    scree_overlap_sum(&team, slice, shape, root, sums);
 }
 
 /// Is a point, in the plane of x and y, on the left of the way from a to b? On the way itself it is imagined moved by

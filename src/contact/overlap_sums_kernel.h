@@ -18,19 +18,6 @@
 #define SCREE_THIN_HEIGHT ((scree_real)0.03)
 #define SCREE_SLIVER_HEIGHT ((scree_real)1e-3)
 
-typedef struct scree_overlap_sums
-{
-    scree_vec3 middle; ///< C
-    scree_box box;     ///< of all collected points
-    scree_real six_volume;
-    scree_real lost;        ///< what rounding has taken from six_volume so far, until it is added at the end
-    scree_vec3 moment;      ///< 24 times the first moment about C
-    scree_vec3 area_vector; ///< twice S
-    scree_vec3 torque;      ///< -6 times the integral of x cross n over the part of A's surface, x from C
-    scree_real residual;
-    scree_real area; ///< of the overlap's surface
-} scree_overlap_sums;
-
 /// Point of the segment p0 p1 nearest to the origin, from its nearer end.
 SCREE_FN scree_vec3 scree_segment_foot(scree_vec3 p0, scree_vec3 p1)
 {
@@ -116,36 +103,69 @@ SCREE_FN void scree_overlap_add_volume(scree_overlap_sums *sums, scree_real term
     sums->six_volume = sum;
 }
 
-/// One edge of the solid, x to y relative to C, with the faces on its left and right.
-SCREE_FN void scree_overlap_add_edge(scree_overlap_sums *sums, scree_vec3 x, scree_vec3 y, scree_overlap_triangle *left,
-                                     scree_overlap_triangle *right, scree_vec3 twice_area)
+/// What one edge of the solid, x to y relative to C, adds: found by any lane, added in turn.
+typedef struct scree_edge_term
 {
-    const scree_vec3 q_left = scree_overlap_plane_foot(left, sums->middle);
-    const scree_vec3 q_right = scree_overlap_plane_foot(right, sums->middle);
-    const scree_real term = scree_vec3_dot(scree_vec3_sub(q_left, q_right), twice_area);
-    scree_overlap_add_volume(sums, term);
-    sums->moment = scree_vec3_add_scaled(sums->moment, scree_vec3_add(x, y), term);
-    left->boundary = scree_vec3_add(left->boundary, twice_area);
-    right->boundary = scree_vec3_sub(right->boundary, twice_area);
+    scree_vec3 twice_area; ///< x cross y
+    scree_vec3 sum;        ///< x + y
+    scree_real six_volume;
+    scree_overlap_triangle *left, *right; ///< faces on its two sides
+} scree_edge_term;
+
+SCREE_FN scree_edge_term scree_overlap_edge_term(scree_vec3 middle, scree_vec3 x, scree_vec3 y,
+                                                 scree_overlap_triangle *left, scree_overlap_triangle *right)
+{
+    scree_edge_term term;
+    term.twice_area = scree_vec3_cross(x, y);
+    term.sum = scree_vec3_add(x, y);
+    term.left = left;
+    term.right = right;
+    const scree_vec3 q_left = scree_overlap_plane_foot(left, middle);
+    const scree_vec3 q_right = scree_overlap_plane_foot(right, middle);
+    term.six_volume = scree_vec3_dot(scree_vec3_sub(q_left, q_right), term.twice_area);
+    return term;
+}
+
+SCREE_FN void scree_overlap_add_edge(scree_overlap_sums *sums, const scree_edge_term *term)
+{
+    scree_overlap_add_volume(sums, term->six_volume);
+    sums->moment = scree_vec3_add_scaled(sums->moment, term->sum, term->six_volume);
+    term->left->boundary = scree_vec3_add(term->left->boundary, term->twice_area);
+    term->right->boundary = scree_vec3_sub(term->right->boundary, term->twice_area);
 }
 
 /// Segments: edges of the solid between a face of A and a face of B.
-SCREE_FN void scree_overlap_sum_segments(scree_overlap_slice *slice, int32_t patch, scree_overlap_sums *sums)
+SCREE_FN void scree_overlap_sum_segments(const scree_team *team, scree_overlap_slice *slice, int32_t patch,
+                                         scree_overlap_sums *sums)
 {
-    for (int32_t s = 0; s < slice->num_segments; ++s)
+    for (int32_t begin = 0; begin < slice->num_segments; begin += scree_team_size(team))
     {
-        const scree_overlap_segment *segment = slice->segments + s;
-        if (segment->end[0] < 0 || segment->end[1] < 0) continue;
-        const scree_overlap_crossing *start = slice->crossings + segment->end[0];
-        if (slice->num_patches > 1 && start->patch != patch) continue;
-        const scree_vec3 p = scree_vec3_sub(start->point, sums->middle);
-        const scree_vec3 q = scree_vec3_sub(slice->crossings[segment->end[1]].point, sums->middle);
-        const scree_vec3 twice_area = scree_vec3_cross(p, q);
-        sums->area_vector = scree_vec3_add(sums->area_vector, twice_area);
-        const scree_real squares = scree_vec3_dot(p, p) + scree_vec3_dot(p, q) + scree_vec3_dot(q, q);
-        sums->torque = scree_vec3_add_scaled(sums->torque, scree_vec3_sub(q, p), squares);
-        scree_overlap_add_edge(sums, p, q, slice->body[0].triangles + segment->triangle_a,
-                               slice->body[1].triangles + segment->triangle_b, twice_area);
+        const int32_t s = begin + scree_team_lane(team);
+        const scree_overlap_segment *segment = slice->segments + (s < slice->num_segments ? s : begin);
+        const bool is_tied = s < slice->num_segments && segment->end[0] >= 0 && segment->end[1] >= 0;
+        const bool counts = is_tied && (slice->num_patches == 1 || slice->crossings[segment->end[0]].patch == patch);
+        scree_edge_term term;
+        scree_vec3 along;
+        scree_real squares = 0;
+        if (counts)
+        {
+            const scree_vec3 p = scree_vec3_sub(slice->crossings[segment->end[0]].point, sums->middle);
+            const scree_vec3 q = scree_vec3_sub(slice->crossings[segment->end[1]].point, sums->middle);
+            squares = scree_vec3_dot(p, p) + scree_vec3_dot(p, q) + scree_vec3_dot(q, q);
+            along = scree_vec3_sub(q, p);
+            term = scree_overlap_edge_term(sums->middle, p, q, slice->body[0].triangles + segment->triangle_a,
+                                           slice->body[1].triangles + segment->triangle_b);
+        }
+        for (uint64_t turns = scree_team_ballot(team, counts); turns != 0; turns &= turns - 1)
+        {
+            if (scree_lowest_bit(turns) == scree_team_lane(team))
+            {
+                sums->area_vector = scree_vec3_add(sums->area_vector, term.twice_area);
+                sums->torque = scree_vec3_add_scaled(sums->torque, along, squares);
+                scree_overlap_add_edge(sums, &term);
+            }
+            scree_team_sync(team);
+        }
     }
 }
 
@@ -177,8 +197,9 @@ SCREE_FN void scree_overlap_sum_intervals(scree_overlap_slice *slice, int32_t si
                 if (slice->num_patches > 1 && *scree_overlap_patch_of(slice, interval.corner[0]) != patch) continue;
                 const scree_vec3 x = scree_vec3_sub(interval.point[0], sums->middle);
                 const scree_vec3 y = scree_vec3_sub(interval.point[1], sums->middle);
-                scree_overlap_add_edge(sums, x, y, scree_overlap_finish(body, left_face),
-                                       scree_overlap_finish(body, right_face), scree_vec3_cross(x, y));
+                const scree_edge_term term = scree_overlap_edge_term(
+                    sums->middle, x, y, scree_overlap_finish(body, left_face), scree_overlap_finish(body, right_face));
+                scree_overlap_add_edge(sums, &term);
             }
         }
     }
@@ -210,11 +231,8 @@ SCREE_FN void scree_overlap_sum_faces(scree_overlap_slice *slice, scree_overlap_
     sums->residual = twice_area > 0 ? scree_vec3_length(twice_sum) / twice_area : 0;
 }
 
-/// All sums of a patch; slice->is_closed is cleared if edges of the solid are missing.
-SCREE_FN void scree_overlap_sum(scree_overlap_slice *slice, const scree_shape_view *const *shape, int32_t patch,
-                                scree_overlap_sums *sums)
+SCREE_FN void scree_overlap_sums_clear(scree_overlap_sums *sums)
 {
-    sums->box = scree_overlap_gather_corners(slice, patch);
     sums->six_volume = 0;
     sums->lost = 0;
     sums->moment = scree_vec3_zero();
@@ -223,14 +241,37 @@ SCREE_FN void scree_overlap_sum(scree_overlap_slice *slice, const scree_shape_vi
     sums->residual = 0;
     sums->area = 0;
     sums->middle = scree_vec3_zero();
+}
+
+/// All sums of a patch; slice->is_closed is cleared if edges of the solid are missing.
+SCREE_FN void scree_overlap_sum(const scree_team *team, scree_overlap_slice *slice,
+                                const scree_shape_view *const *shape, int32_t patch, scree_overlap_sums *sums)
+{
+    if (scree_team_leads(team))
+    {
+        sums->box = scree_overlap_gather_corners(slice, patch);
+        scree_overlap_sums_clear(sums);
+        if (sums->box.lower.x <= sums->box.upper.x)
+            sums->middle = scree_vec3_scale(scree_vec3_add(sums->box.lower, sums->box.upper), (scree_real)0.5);
+    }
+    scree_team_sync(team);
     if (sums->box.lower.x > sums->box.upper.x) return;
     for (int32_t side = 0; slice->num_patches > 1 && side < 2; ++side)
         for (int32_t t = 0; t < slice->body[side].num_triangles; ++t) slice->body[side].triangles[t].has_foot = false;
-    sums->middle = scree_vec3_scale(scree_vec3_add(sums->box.lower, sums->box.upper), (scree_real)0.5);
-    scree_overlap_sum_segments(slice, patch, sums);
-    for (int32_t side = 0; side < 2; ++side) scree_overlap_sum_intervals(slice, side, shape[side], patch, sums);
-    scree_overlap_sum_faces(slice, sums);
-    sums->six_volume += sums->lost;
+    // the feet that several lanes would come to find at once; of faces that have no edge they change no sum
+    for (int32_t side = 0; scree_team_size(team) > 1 && side < 2; ++side)
+        for (int32_t t = scree_team_lane(team); t < slice->body[side].num_triangles; t += scree_team_size(team))
+            if (slice->body[side].kept[t].is_finished)
+                scree_overlap_plane_foot(slice->body[side].triangles + t, sums->middle);
+    scree_team_sync(team);
+    scree_overlap_sum_segments(team, slice, patch, sums);
+    if (scree_team_leads(team))
+    {
+        for (int32_t side = 0; side < 2; ++side) scree_overlap_sum_intervals(slice, side, shape[side], patch, sums);
+        scree_overlap_sum_faces(slice, sums);
+        sums->six_volume += sums->lost;
+    }
+    scree_team_sync(team);
 }
 
 /// Extent of the gathered corners along n.

@@ -12,6 +12,7 @@
 
 #include "contact/overlap_frame_kernel.h"
 #include "contact/overlap_parts.h"
+#include "core/team.h"
 
 /// What a triangle must reach into: a box, and the half-space direction . v <= reach.
 typedef struct scree_filter_region
@@ -39,12 +40,12 @@ SCREE_FN scree_vec3 scree_posed_vertex(const scree_posed_shape *posed, int32_t v
 
 /// All vertices into the working frame, in the order of the shape. Returns the largest direction . v; the depths are
 /// -direction . v until the reach of the half-space is known.
-SCREE_FN scree_real scree_filter_load_all(scree_overlap_body *body, const scree_posed_shape *posed,
-                                          scree_vec3 direction)
+SCREE_FN scree_real scree_filter_load_all(const scree_team *team, scree_overlap_body *body,
+                                          const scree_posed_shape *posed, scree_vec3 direction)
 {
     const int32_t num = posed->shape->num_vertices;
     scree_real most = -SCREE_REAL_MAX;
-    for (int32_t v = 0; v < num; ++v)
+    for (int32_t v = scree_team_lane(team); v < num; v += scree_team_size(team))
     {
         scree_overlap_vertex *vertex = body->vertices + v;
         vertex->point = scree_posed_vertex(posed, v);
@@ -52,8 +53,9 @@ SCREE_FN scree_real scree_filter_load_all(scree_overlap_body *body, const scree_
         vertex->depth = scree_vec3_dot(direction, vertex->point);
         most = scree_max(most, vertex->depth);
     }
-    body->num_vertices = num;
-    return most;
+    if (scree_team_leads(team)) body->num_vertices = num;
+    scree_team_sync(team);
+    return scree_team_max(team, most);
 }
 
 /// Does a box miss the region?
@@ -67,24 +69,33 @@ SCREE_FN bool scree_filter_misses(const scree_filter_region *region, const scree
     return (misses_sideways | misses) != 0;
 }
 
-/// Keeps triangles of a loaded body that reach into the half-space.
-SCREE_FN void scree_filter_all(scree_overlap_body *body, const scree_shape_view *shape)
+/// Keeps triangles of a loaded body that reach into the half-space, of which the reach is known now.
+SCREE_FN void scree_filter_all(const scree_team *team, scree_overlap_body *body, const scree_shape_view *shape,
+                               scree_real reach)
 {
-    const scree_overlap_vertex *vertices = body->vertices;
+    // what was loaded is the distance along the direction of the other's half-space, which is opposite
+    scree_overlap_vertex *vertices = body->vertices;
+    for (int32_t v = scree_team_lane(team); v < body->num_vertices; v += scree_team_size(team))
+        vertices[v].depth += reach;
+    scree_team_sync(team);
     int32_t num = 0;
-    for (int32_t id = 0; id < shape->num_triangles; ++id)
+    for (int32_t begin = 0; begin < shape->num_triangles; begin += scree_team_size(team))
     {
         // written first and kept or not: no branch that cannot be foreseen
-        const int32_t *v = shape->triangles[id].v;
-        scree_kept_triangle *kept = body->kept + num;
+        const int32_t id = begin + scree_team_lane(team);
+        const int32_t *v = shape->triangles[id < shape->num_triangles ? id : 0].v;
+        const bool reaches = ((int32_t)(vertices[v[0]].depth >= 0) | (int32_t)(vertices[v[1]].depth >= 0) |
+                              (int32_t)(vertices[v[2]].depth >= 0)) != 0;
+        const bool is_kept = reaches && id < shape->num_triangles;
+        scree_kept_triangle *kept = body->kept + scree_team_place(team, is_kept, &num);
+        if (!scree_team_writes(team, is_kept)) continue;
         kept->v[0] = v[0];
         kept->v[1] = v[1];
         kept->v[2] = v[2];
         kept->id = id;
-        num += (int32_t)(vertices[v[0]].depth >= 0) | (int32_t)(vertices[v[1]].depth >= 0) |
-               (int32_t)(vertices[v[2]].depth >= 0);
     }
-    body->num_triangles = num;
+    if (scree_team_leads(team)) body->num_triangles = num;
+    scree_team_sync(team);
 }
 
 /// Place of vertex v of the shape among the kept ones, where it is put if it is new.
@@ -206,47 +217,66 @@ SCREE_FN scree_box scree_filter_clipped_box(const scree_overlap_vertex *vertices
     return scree_box_with_point(box, (is_from_within ? from : last)->point);
 }
 
-/// The first `num` triangles are what is kept for a region.
-SCREE_FN void scree_filter_end(scree_overlap_body *body, const scree_filter_region *region, int32_t num)
+/// The first `num` triangles are what is kept for a region. `region` may be of any lane's own.
+SCREE_FN void scree_filter_end(const scree_team *team, scree_overlap_body *body, const scree_filter_region *region,
+                               int32_t num)
 {
+    scree_team_sync(team);
     scree_box all = scree_box_empty();
-    for (int32_t t = 0; t < num; ++t) all = scree_box_union(all, body->triangle_boxes[t]);
-    body->num_triangles = num;
-    body->box = all;
-    body->region = region->box;
+    for (int32_t t = scree_team_lane(team); t < num; t += scree_team_size(team))
+        all = scree_box_union(all, body->triangle_boxes[t]);
+    all.lower = scree_vec3_negate(scree_team_max3(team, scree_vec3_negate(all.lower)));
+    all.upper = scree_team_max3(team, all.upper);
+    if (scree_team_leads(team))
+    {
+        body->num_triangles = num;
+        body->box = all;
+        body->region = region->box;
+    }
+    scree_team_sync(team);
 }
 
 /// Boxes of the kept triangles, clipped to the half-space; drops those that do not reach into the region with it.
-SCREE_FN void scree_filter_clip(scree_overlap_body *body, const scree_filter_region *region, scree_real margin)
+SCREE_FN void scree_filter_clip(const scree_team *team, scree_overlap_body *body, const scree_filter_region *region,
+                                scree_real margin)
 {
     const scree_vec3 margins = scree_vec3_make(margin, margin, margin);
+    const int32_t num_before = body->num_triangles;
     int32_t num = 0;
-    for (int32_t t = 0; t < body->num_triangles; ++t)
+    for (int32_t begin = 0; begin < num_before; begin += scree_team_size(team))
     {
         // written first and kept or not
-        const scree_kept_triangle kept = body->kept[t];
+        const int32_t t = begin + scree_team_lane(team);
+        const scree_kept_triangle kept = body->kept[t < num_before ? t : begin];
         scree_box box = scree_filter_clipped_box(body->vertices, kept.v);
         box.lower = scree_vec3_sub(box.lower, margins);
         box.upper = scree_vec3_add(box.upper, margins);
-        body->kept[num] = kept;
-        body->triangle_boxes[num] = box;
-        num += (int32_t)!scree_filter_misses(region, &box);
+        const bool is_kept = !scree_filter_misses(region, &box) && t < num_before;
+        const int32_t place = scree_team_place(team, is_kept, &num);
+        if (!scree_team_writes(team, is_kept)) continue;
+        body->kept[place] = kept;
+        body->triangle_boxes[place] = box;
     }
-    scree_filter_end(body, region, num);
+    scree_filter_end(team, body, region, num);
 }
 
 /// Drops triangles that do not reach into a smaller region with the same half-space.
-SCREE_FN void scree_filter_again(scree_overlap_body *body, const scree_filter_region *region)
+SCREE_FN void scree_filter_again(const scree_team *team, scree_overlap_body *body, const scree_filter_region *region)
 {
+    const int32_t num_before = body->num_triangles;
     int32_t num = 0;
-    for (int32_t t = 0; t < body->num_triangles; ++t)
+    for (int32_t begin = 0; begin < num_before; begin += scree_team_size(team))
     {
-        const scree_box box = body->triangle_boxes[t];
-        body->kept[num] = body->kept[t];
-        body->triangle_boxes[num] = box;
-        num += (int32_t)!scree_filter_misses(region, &box);
+        const int32_t t = begin + scree_team_lane(team);
+        const scree_kept_triangle kept = body->kept[t < num_before ? t : begin];
+        const scree_box box = body->triangle_boxes[t < num_before ? t : begin];
+        const bool is_kept = !scree_filter_misses(region, &box) && t < num_before;
+        const int32_t place = scree_team_place(team, is_kept, &num);
+        if (!scree_team_writes(team, is_kept)) continue;
+        body->kept[place] = kept;
+        body->triangle_boxes[place] = box;
     }
-    scree_filter_end(body, region, num);
+    scree_filter_end(team, body, region, num);
 }
 
 /// Is a vertex of the body beyond doubt outside the other?
@@ -259,8 +289,8 @@ SCREE_FN bool scree_filter_is_outside(const scree_overlap_body *body, bool is_of
             (int32_t)(p.y < region->lower.y) | (int32_t)(p.y > region->upper.y) | beyond) != 0;
 }
 
-/// Room for this shape? Sets slice->lack if not.
-SCREE_FN bool scree_filter_has_room(scree_overlap_slice *slice, int32_t side, const scree_shape_view *shape)
+/// Sets slice->lack if there is no room for this shape.
+SCREE_FN void scree_filter_check_room(scree_overlap_slice *slice, int32_t side, const scree_shape_view *shape)
 {
     const scree_overlap_body *body = slice->body + side;
     const bool uses_tree = scree_filter_uses_tree(shape);
@@ -269,18 +299,18 @@ SCREE_FN bool scree_filter_has_room(scree_overlap_slice *slice, int32_t side, co
         slice->lack = SCREE_LACK_SHAPE;
     else if (!uses_tree && (shape->num_vertices > body->max_vertices || shape->num_triangles >= body->max_triangles))
         slice->lack = SCREE_LACK_PIECES;
-    return slice->lack == SCREE_LACK_NOTHING;
 }
 
 /// No triangle is finished, all can be found by their id.
-SCREE_FN void scree_filter_enter(scree_overlap_body *body)
+SCREE_FN void scree_filter_enter(const scree_team *team, scree_overlap_body *body)
 {
-    for (int32_t t = 0; t < body->num_triangles; ++t)
+    for (int32_t t = scree_team_lane(team); t < body->num_triangles; t += scree_team_size(team))
     {
         body->kept[t].is_finished = false;
         body->kept[t].face = t;
         body->triangle_slot[body->kept[t].id] = t;
     }
+    scree_team_sync(team);
 }
 
 /// A kept triangle with what is derived from its corners, made when it is asked for first.

@@ -446,6 +446,7 @@ static void find_overlaps_on(side &where)
     args.slices = where.copy(slices.data(), num_pairs);
     args.results = where.make<scree_overlap_result>(num_pairs);
     args.options = s->narrow_phase.options;
+    args.num_lanes = 8;
     if (where.is_device) scree_overlap_pairs_launch_cuda(where.device, args, num_pairs);
     else
         for (int64_t p = 0; p < num_pairs; ++p) scree_overlap_pairs_at(args, p);

@@ -119,14 +119,17 @@ SCREE_FN void scree_sphere_sphere_write_at(scree_sphere_sphere_write_args a, int
     scree_write_sphere_pair(a.list, p, pair, scree_touching_pair(a.spheres[pair.i], a.spheres[pair.j]));
 }
 
-/// Sphere k of a posed body, its centre measured from the body's position along the world axes; `rotation` is that of
-/// the body.
-SCREE_FN scree_sphere scree_turned_sphere(const scree_shape_view *shape, const scree_mat3 *rotation, scree_real scale,
-                                          int32_t k)
+/// Sphere k of a posed body, its centre measured from the body's position along the world axes. The rotation is made
+/// anew for each: kept, it would cost more registers than it saves time.
+SCREE_FN scree_sphere scree_turned_sphere(const scree_shape_view *shape, const scree_pose *pose, int32_t k)
 {
     scree_sphere sphere = scree_shape_sphere(shape, k);
-    if (shape->spheres) sphere.centre = scree_vec3_scale(scree_mat3_apply(*rotation, sphere.centre), scale);
-    sphere.radius = sphere.radius * scale;
+    if (shape->spheres)
+    {
+        const scree_mat3 rotation = scree_mat3_from_quat(pose->orientation);
+        sphere.centre = scree_vec3_scale(scree_mat3_apply(rotation, sphere.centre), pose->scale);
+    }
+    sphere.radius = sphere.radius * pose->scale;
     return sphere;
 }
 
@@ -135,26 +138,24 @@ SCREE_FN void scree_sphere_mesh_count_at(scree_sphere_mesh_count_args a, int64_t
     const scree_candidate_pair pair = a.pairs[a.batch[b]];
     const bool is_first = a.shapes[a.shape[pair.i]].kind != SCREE_KIND_MESH; // is the sphere or clump
     const int32_t body = is_first ? pair.i : pair.j, mesh = is_first ? pair.j : pair.i;
-    const scree_shape_view *shape = a.shapes + a.shape[body];
-    const scree_pose pose = a.pose[body];
-    const scree_mat3 rotation = scree_mat3_from_quat(pose.orientation);
-    scree_sphere_contact *found = a.found + b * a.max_found;
-    int32_t num = 0;
-    bool is_any_inside = false;
-    for (int32_t k = 0; k < shape->num_spheres; ++k)
+    // sums are kept in memory, for the search on the mesh needs all registers
+    int32_t *num = a.num_contacts + a.batch[b];
+    *num = 0;
+    a.is_inside[b] = 0;
+    for (int32_t k = 0; k < a.shapes[a.shape[body]].num_spheres; ++k)
     {
-        const scree_sphere sphere = scree_turned_sphere(shape, &rotation, pose.scale, k);
-        const int32_t first = num < a.max_found ? num : a.max_found;
+        const scree_sphere sphere = scree_turned_sphere(a.shapes + a.shape[body], a.pose + body, k);
+        const int32_t first = *num < a.max_found ? *num : a.max_found;
+        scree_sphere_contact *found = a.found + b * a.max_found + first;
         bool is_inside;
-        num += scree_sphere_mesh_contacts(
+        const int32_t added = scree_sphere_mesh_contacts(
             a.shapes + a.shape[mesh],
-            scree_sphere_to_mesh(scree_vec3_add(pose.position, sphere.centre), sphere.radius, a.pose + mesh),
-            found + first, a.max_found - first, &is_inside);
-        is_any_inside |= is_inside;
-        for (int32_t f = first; f < num && f < a.max_found; ++f) found[f].sphere = k;
+            scree_sphere_to_mesh(scree_vec3_add(a.pose[body].position, sphere.centre), sphere.radius, a.pose + mesh),
+            found, a.max_found - first, &is_inside);
+        for (int32_t f = 0; f < added && first + f < a.max_found; ++f) found[f].sphere = k;
+        *num += added;
+        if (is_inside) a.is_inside[b] = 1;
     }
-    a.num_contacts[a.batch[b]] = num;
-    a.is_inside[b] = is_any_inside ? 1 : 0;
 }
 
 SCREE_FN void scree_sphere_mesh_write_at(scree_sphere_mesh_write_args a, int64_t b)
@@ -164,16 +165,13 @@ SCREE_FN void scree_sphere_mesh_write_at(scree_sphere_mesh_write_args a, int64_t
     const scree_candidate_pair pair = a.pairs[p];
     const bool is_first = a.shapes[a.shape[pair.i]].kind != SCREE_KIND_MESH;
     const int32_t body = is_first ? pair.i : pair.j;
-    const scree_pose pose = a.pose[body];
-    const scree_mat3 rotation = scree_mat3_from_quat(pose.orientation);
-    const scree_vec3 to_body = scree_vec3_sub(pose.position, a.pose[pair.i].position);
+    const scree_vec3 to_body = scree_vec3_sub(a.pose[body].position, a.pose[pair.i].position);
     int32_t in_part = 0;
     for (int32_t k = 0; k < a.num_contacts[p]; ++k)
     {
         const int64_t c = a.list.first_of_pair[p] + k;
         const scree_sphere_contact contact = a.found[b * a.max_found + k];
-        const scree_sphere sphere =
-            scree_turned_sphere(a.shapes + a.shape[body], &rotation, pose.scale, contact.sphere);
+        const scree_sphere sphere = scree_turned_sphere(a.shapes + a.shape[body], a.pose + body, contact.sphere);
         in_part = k > 0 && a.found[b * a.max_found + k - 1].sphere == contact.sphere ? in_part + 1 : 0;
         const scree_vec3 arm =
             scree_vec3_add(sphere.centre, scree_vec3_scale(contact.normal, contact.indentation / 2 - sphere.radius));
@@ -193,30 +191,28 @@ SCREE_FN int32_t scree_clump_clump_contacts(scree_sphere_pairs_args a, int32_t p
 {
     const scree_candidate_pair pair = a.pairs[p];
     const scree_shape_view *shape_i = a.shapes + a.shape[pair.i], *shape_j = a.shapes + a.shape[pair.j];
-    const scree_pose pose_i = a.pose[pair.i], pose_j = a.pose[pair.j];
-    const scree_mat3 rotation_i = scree_mat3_from_quat(pose_i.orientation);
-    const scree_mat3 rotation_j = scree_mat3_from_quat(pose_j.orientation);
-    const scree_vec3 between = scree_vec3_sub(pose_i.position, pose_j.position);
-    const scree_real reach = shape_j->bounding_radius * pose_j.scale;
+    const scree_vec3 between = scree_vec3_sub(a.pose[pair.i].position, a.pose[pair.j].position);
+    const scree_real scale_j = a.pose[pair.j].scale, reach = shape_j->bounding_radius * scale_j;
     int32_t num = 0;
     for (int32_t k = 0; k < shape_i->num_spheres; ++k)
     {
-        const scree_sphere mine = scree_turned_sphere(shape_i, &rotation_i, pose_i.scale, k);
+        const scree_sphere mine = scree_turned_sphere(shape_i, a.pose + pair.i, k);
         const scree_vec3 from_j = scree_vec3_add(between, mine.centre);
         if (scree_vec3_dot(from_j, from_j) > (reach + mine.radius) * (reach + mine.radius)) continue;
         // the other's spheres stay as stored, only mine are turned
+        const scree_mat3 rotation_j = scree_mat3_from_quat(a.pose[pair.j].orientation);
         const scree_vec3 seen = scree_mat3_apply_transposed(rotation_j, from_j);
         for (int32_t m = 0; m < shape_j->num_spheres; ++m)
         {
             const scree_sphere other = scree_shape_sphere(shape_j, m);
-            const scree_real radius = other.radius * pose_j.scale;
-            scree_sphere_contact contact;
-            if (!scree_sphere_sphere_contact(scree_vec3_add_scaled(seen, other.centre, -pose_j.scale),
-                                             mine.radius + radius, &contact))
-                continue;
-            const int64_t c = is_written ? a.list.first_of_pair[p] + num : 0;
+            const scree_real radius = other.radius * scale_j;
+            const scree_vec3 to_mine = scree_vec3_add_scaled(seen, other.centre, -scale_j);
+            if (!scree_spheres_touch(to_mine, mine.radius + radius)) continue;
             ++num;
             if (!is_written) continue;
+            const int64_t c = a.list.first_of_pair[p] + num - 1;
+            scree_sphere_contact contact;
+            scree_sphere_sphere_contact(to_mine, mine.radius + radius, &contact);
             const scree_vec3 normal = scree_mat3_apply(rotation_j, contact.normal);
             a.list.bodies[c] = pair;
             a.list.patch[c] = (k * shape_j->num_spheres + m) << SCREE_PATCH_BITS;

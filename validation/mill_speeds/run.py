@@ -1,0 +1,142 @@
+"""Power of a mill over its speed, with and without lifters. Makes README.md and its pictures.
+
+Usage: python run.py [--keep]
+  --keep   pictures and page again from results.json and the runs in runs/mill_speeds, without computing anything
+QUICK=1 in the environment takes every other speed, in runs/mill_speeds_quick.
+"""
+
+import json
+import math
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+FOLDER = Path(__file__).resolve().parent
+ROOT = FOLDER.parent.parent
+sys.path.insert(0, str(ROOT / "tools"))
+from fields import Fields  # noqa: E402
+from run_folder import Run  # noqa: E402
+
+QUICK = os.environ.get("QUICK") == "1"
+RUNS = ROOT / "runs" / ("mill_speeds_quick" if QUICK else "mill_speeds")
+RESULTS = FOLDER / "results.json"
+RADIUS, GRAVITY, START = 0.15, 9.81, 0.2
+SPEEDS = [40, 60, 80, 100] if QUICK else [40, 50, 60, 70, 80, 90, 100, 110]
+CASES = {"with": "eight lifters of 10 mm x 10 mm", "without": "smooth drum"}
+SHOWN = [40, 80, 100]
+
+
+def rate(percent):
+    """[rad/s]"""
+    return percent / 100 * math.sqrt(GRAVITY / RADIUS)
+
+
+def compute():
+    for percent in SPEEDS:
+        revolution = 2 * math.pi / rate(percent)
+        for case in CASES:
+            values = {
+                "shapes.bead.size": 0.012, "particles.beads.count": 375, "time.step": 6e-5,
+                "time.end": f"{START + 2 * revolution + 1e-3:.6f}", "fields.from": f"{START + revolution:.6f}",
+                "walls.drum.motion.angular_velocity": f"{-rate(percent):.6f}",
+                "walls.lifters.motion.angular_velocity": f"{-rate(percent):.6f}", "output.frames": 0.5,
+            }
+            if case == "without":
+                values["walls.lifters.removed_at"] = 0
+            command = [ROOT / "build" / "release" / "scree", "run", ROOT / "scenes" / "tumbling_mill.yaml", "-o",
+                       RUNS / f"{case}_{percent}", "--replace", "--quiet"]
+            for key, value in values.items():
+                command += ["--set", f"{key}={value}"]
+            print("+", case, percent, flush=True)
+            subprocess.run([str(part) for part in command], check=True, env=dict(os.environ, OMP_NUM_THREADS="1"))
+
+
+def measure(case, percent):
+    run = Run(RUNS / f"{case}_{percent}")
+    summary, series = run.summary(), run.series()
+    loads = summary["wall_loads"]
+    power = sum(wall["power_of_periods"] for wall in loads.values())
+    work = sum(series[name] for name in series if name.startswith("work_"))
+    edges = START + 2 * math.pi / rate(percent) * (1 + np.arange(9) / 8)
+    blocks = np.diff(np.interp(edges, series["time"], work)) / np.diff(edges)
+    return {"power": power, "error": float(blocks.std(ddof=1) / math.sqrt(8)), "mass": summary["mass"],
+            "particles": summary["particles"], "indentation": summary["counters"]["largest_indentation"],
+            "energy_error": summary["energy_error"]}
+
+
+def bond(share):
+    """How Bond's formula for the power of ball mills with lifters depends on the share of the critical speed."""
+    return share * (1 - 0.1 / 2 ** (9 - 10 * share))
+
+
+def draw_power(results, path):
+    figure, axes = plt.subplots(figsize=(7, 4.6), layout="constrained")
+    for (case, text), style in zip(CASES.items(), ("C0o-", "C1s-"), strict=True):
+        rows = [results[f"{case}_{p}"] for p in SPEEDS]
+        axes.errorbar(SPEEDS, [r["power"] for r in rows], [r["error"] for r in rows], fmt=style, capsize=2, label=text)
+    fitted = [p for p in SPEEDS if p <= 70]
+    shares = np.array([bond(p / 100) for p in fitted])
+    powers = np.array([results[f"with_{p}"]["power"] for p in fitted])
+    factor = float(shares @ powers / (shares @ shares))
+    x = np.linspace(40, 110, 100)
+    axes.plot(x, factor * bond(x / 100), "k--", lw=1, label="Bond's speed factor, scaled to 40-70 % with lifters")
+    axes.set(xlabel="share of the critical speed [%]", ylabel="power [W]", ylim=(0, None))
+    axes.legend(frameon=False)
+    figure.savefig(path, dpi=100)
+    plt.close(figure)
+
+
+def draw_maps(path):
+    figure, axes = plt.subplots(2, len(SHOWN), figsize=(11, 7.4), layout="constrained", sharex=True, sharey=True)
+    for row, (case, text) in enumerate(CASES.items()):
+        for column, percent in enumerate(SHOWN):
+            fields = Fields(Run(RUNS / f"{case}_{percent}"))
+            _, fraction, _ = fields.across(1)
+            mesh = axes[row, column].pcolormesh(fields.edges(0) * 1e3, fields.edges(2) * 1e3,
+                                                np.where(fraction > 0, fraction, np.nan).T, cmap="viridis", vmin=0, vmax=0.7)
+            axes[row, column].add_patch(plt.Circle((0, 0), RADIUS * 1e3, fill=False, linewidth=0.8))
+            axes[row, column].set_aspect("equal")
+            axes[row, column].set_title(f"{text}, {percent} %", fontsize=10)
+    figure.colorbar(mesh, ax=axes, label="solid fraction")
+    figure.supxlabel("x [mm]")
+    figure.supylabel("z [mm]")
+    figure.savefig(path, dpi=90)
+    plt.close(figure)
+
+
+def table(results):
+    lines = ["| share of the critical speed [%] | with lifters [W] | power/(m g R ω) | smooth [W] | power/(m g R ω) |",
+             "|---|---|---|---|---|"]
+    for percent in SPEEDS:
+        cells = []
+        for case in CASES:
+            r = results[f"{case}_{percent}"]
+            scaled = r["power"] / (r["mass"] * GRAVITY * RADIUS * rate(percent))
+            cells += [f"{r['power']:.3f} ± {r['error']:.3f}", f"{scaled:.3f}"]
+        lines.append(f"| {percent} | " + " | ".join(cells) + " |")
+    return "\n".join(lines)
+
+
+def main():
+    if "--keep" not in sys.argv[1:]:
+        compute()
+    results = {f"{case}_{percent}": measure(case, percent) for case in CASES for percent in SPEEDS}
+    RESULTS.write_text(json.dumps(results, indent=1) + "\n")
+    draw_power(results, FOLDER / "power.png")
+    draw_maps(FOLDER / "maps.png")
+    page = (FOLDER / "page.md").read_text().replace("{{table}}", table(results))
+    worst = max(abs(r["energy_error"]) for r in results.values())
+    deepest = max(r["indentation"] for r in results.values())
+    page = page.replace("{{energy_error}}", f"{worst:.0e}").replace("{{indentation}}", f"{100 * deepest / 0.006:.0f}")
+    (FOLDER / "README.md").write_text(page)
+
+
+if __name__ == "__main__":
+    main()

@@ -82,6 +82,13 @@ extern "C"
         double radius;      ///< [m]
     } scree_clump_sphere;
 
+    /// Filling of a mesh with the spheres of a clump.
+    typedef struct scree_clump_fill_def
+    {
+        char *shape;     ///< name of the shape that is filled; "": none
+        int64_t spheres; ///< how many
+    } scree_clump_fill_def;
+
     typedef struct scree_shape_def
     {
         char *name;
@@ -95,8 +102,9 @@ extern "C"
         int64_t segments;            ///< of turned: sides of the cross-sections
         scree_clump_sphere *spheres; ///< of a clump
         uint32_t num_spheres;
-        double offset[3]; ///< [m] added to every vertex
-        int64_t copies;   ///< of the shifted mesh, turned evenly about z: one body of several pieces
+        scree_clump_fill_def fill; ///< of a clump, instead of spheres
+        double offset[3];          ///< [m] added to every vertex
+        int64_t copies;            ///< of the shifted mesh, turned evenly about z: one body of several pieces
     } scree_shape_def;
 
     typedef enum scree_size_distribution

@@ -1,12 +1,12 @@
 /// \file create.c
 /// A scene to a simulation at time 0. The scene's own faults (ranges, names) have been refused by its reader; what only
 /// shows with meshes and particles in place is refused here.
+#include "contact/clump_fill.h"
 #include "dynamics/populate.h"
 #include "dynamics/skin.h"
 #include "dynamics/start_check.h"
 #include "dynamics/step_buffers.h"
 #include "dynamics/time_step.h"
-#include "polyhedra/clump.h"
 #include "polyhedra/generate.h"
 #include "polyhedra/import.h"
 #include "polyhedra/simplify.h"
@@ -120,33 +120,62 @@ static scree_status make_mesh(scree_mesh *mesh, const scree_shape_def *def, cons
     return status;
 }
 
+/// Spheres that fill the mesh of another shape, to `spheres`.
+static scree_status fill_mesh(const scree_scene *scene, const scree_shape_def *def, const char *folder,
+                              scree_clump_sphere *spheres, scree_report *report)
+{
+    const int32_t wanted = (int32_t)def->fill.spheres, filled = find_shape(scene, def->fill.shape);
+    scree_mesh mesh = {0};
+    int32_t num_made = 0;
+    if (filled < 0 || is_without_mesh(scene->shapes + filled) || wanted < 1 || wanted > SCREE_CLUMP_MAX_SPHERES)
+    {
+        scree_report_add(report, "shape \"%s\" fills \"%s\" with %d spheres; name a shape that has a mesh, and 1 to %d",
+                         def->name, def->fill.shape, wanted, SCREE_CLUMP_MAX_SPHERES);
+        return SCREE_INVALID_INPUT;
+    }
+    scree_status status = make_mesh(&mesh, scene->shapes + filled, folder, report);
+    if (status == SCREE_OK) status = scree_clump_fill(&mesh, wanted, spheres, &num_made);
+    scree_mesh_destroy(&mesh);
+    if (status != SCREE_OK || num_made == wanted) return status;
+    scree_report_add(report, "shape \"%s\": only %d spheres fit into \"%s\" that show and hang together; ask for fewer",
+                     def->name, num_made, def->fill.shape);
+    return SCREE_INVALID_INPUT;
+}
+
+static scree_status make_clump(scree_simulation *s, int32_t k, const char *folder, scree_report *report)
+{
+    const scree_shape_def *def = s->scene->shapes + k;
+    const bool is_filled = def->fill.shape != NULL && def->fill.shape[0] != '\0';
+    scree_clump_sphere filled[SCREE_CLUMP_MAX_SPHERES];
+    const scree_status status = is_filled ? fill_mesh(s->scene, def, folder, filled, report) : SCREE_OK;
+    if (status != SCREE_OK) return status;
+    const scree_clump_sphere *spheres = is_filled ? filled : def->spheres;
+    const int32_t num = is_filled ? (int32_t)def->fill.spheres : (int32_t)def->num_spheres;
+    const scree_clump_fault fault = scree_clump_check(spheres, num);
+    if (fault.kind == SCREE_CLUMP_GOOD) return scree_shape_create_clump(s->particle_shapes + k, spheres, num);
+    char text[256];
+    scree_clump_describe_fault(&fault, text, sizeof text);
+    scree_report_add(report, "spheres of shape \"%s\" %s", def->name, text);
+    return SCREE_INVALID_INPUT;
+}
+
 /// A true sphere or a clump needs no mesh, but it cannot be a wall.
-static scree_status make_spheres(scree_simulation *s, int32_t k, bool is_wall, scree_report *report)
+static scree_status make_spheres(scree_simulation *s, int32_t k, bool is_wall, const char *folder, scree_report *report)
 {
     const scree_shape_def *def = s->scene->shapes + k;
     const bool is_clump = def->source == SCREE_SHAPE_CLUMP;
     if (is_wall)
     {
-        scree_report_add(report,
-                         "shape \"%s\" is a %s, but a wall is made of it, and walls are meshes; %s give the wall a "
-                         "shape of its own",
-                         def->name, is_clump ? "clump" : "true sphere (triangles is 0)",
-                         is_clump ? "" : "set triangles of it, for instance 1280, or");
+        scree_report_add(
+            report,
+            "shape \"%s\" is a %s, but a wall is made of it, and walls are meshes; %sgive the wall a shape "
+            "of its own",
+            def->name, is_clump ? "clump" : "true sphere (triangles is 0)",
+            is_clump ? "" : "set triangles of it, for instance 1280, or ");
         return SCREE_INVALID_INPUT;
     }
     scree_status status = SCREE_OK;
-    if (is_clump)
-    {
-        const scree_clump_fault fault = scree_clump_check(def->spheres, (int32_t)def->num_spheres);
-        if (fault.kind != SCREE_CLUMP_GOOD)
-        {
-            char text[256];
-            scree_clump_describe_fault(&fault, text, sizeof text);
-            scree_report_add(report, "spheres of shape \"%s\" %s", def->name, text);
-            return SCREE_INVALID_INPUT;
-        }
-        status = scree_shape_create_clump(s->particle_shapes + k, def->spheres, (int32_t)def->num_spheres);
-    }
+    if (is_clump) status = make_clump(s, k, folder, report);
     else scree_shape_create_sphere(s->particle_shapes + k, 0.5 * def->size[0]);
     s->shape_views[k] = s->particle_shapes[k].view;
     return status;
@@ -166,7 +195,7 @@ static scree_status make_shapes(scree_simulation *s, const char *folder, scree_r
         if (!is_particle && !is_wall) continue;
         if (is_without_mesh(scene->shapes + k))
         {
-            const scree_status made = make_spheres(s, k, is_wall, report);
+            const scree_status made = make_spheres(s, k, is_wall, folder, report);
             if (made != SCREE_OK) worst = made;
             continue;
         }

@@ -80,12 +80,14 @@ static void check_sphere(scree_scene_reader *reader, const scree_yaml_node *shap
 }
 
 /// A clump: its spheres hang together, and it is no mesh that could be shifted and repeated.
-static void check_clump(scree_scene_reader *reader, const scree_yaml_node *shape, const char *of)
+static void check_clump(scree_scene_reader *reader, const scree_yaml_node *shape, const char *of, bool is_filled)
 {
     scree_clump_sphere spheres[SCREE_CLUMP_MAX_SPHERES];
     const scree_yaml_node *list = scree_yaml_find(shape, "spheres");
     const int64_t num = scree_rules_num_items(list);
-    bool is_known = list != NULL && !list->is_refused && num <= SCREE_CLUMP_MAX_SPHERES;
+    if (is_filled && num > 0)
+        scree_scene_fault(reader, list, "spheres of %s are given, but so is fill; remove one of them", of);
+    bool is_known = !is_filled && list != NULL && !list->is_refused && num <= SCREE_CLUMP_MAX_SPHERES;
     for (int64_t k = 0; k < num && is_known; ++k)
         is_known = scree_rules_numbers(list->items[k], "position", spheres[k].position, 3) &&
                    scree_rules_number(list->items[k], "radius", &spheres[k].radius);
@@ -107,7 +109,29 @@ static void check_clump(scree_scene_reader *reader, const scree_yaml_node *shape
     warn_unused_key(reader, shape, "size", of, "the spheres have the lengths");
 }
 
-static void check_shape(scree_scene_reader *reader, const scree_yaml_node *shape, const char *of)
+/// The shape that a clump fills: a mesh, by its name. True if there is one.
+static bool check_fill(scree_scene_reader *reader, scree_rules_names *shapes, const scree_yaml_node *shape,
+                       const char *of)
+{
+    const scree_yaml_node *fill = scree_yaml_find(shape, "fill");
+    const char *name = scree_rules_text(fill, "shape");
+    if (name == NULL || name[0] == '\0') return false;
+    char label[80];
+    snprintf(label, sizeof label, "fill.shape of %s", of);
+    const int64_t index = scree_rules_resolve(reader, shapes, scree_yaml_find(fill, "shape"), label);
+    if (index < 0) return true;
+    const scree_yaml_node *node = scree_yaml_find(reader->root, "shapes")->items[index];
+    const char *source = scree_rules_text(node, "source");
+    double triangles = 1;
+    if (source != NULL && strcmp(source, "sphere") == 0) scree_rules_number(node, "triangles", &triangles);
+    if (source == NULL || (strcmp(source, "clump") != 0 && triangles > 0)) return true;
+    scree_scene_fault(reader, scree_rules_place(fill, "shape"),
+                      "fill.shape of %s is \"%.255s\", which has no mesh to fill; name a shape that has one", of, name);
+    return true;
+}
+
+static void check_shape(scree_scene_reader *reader, scree_rules_names *shapes, const scree_yaml_node *shape,
+                        const char *of)
 {
     const char *source = scree_rules_text(shape, "source"), *file = scree_rules_text(shape, "file");
     if (source == NULL) return;
@@ -118,8 +142,9 @@ static void check_shape(scree_scene_reader *reader, const scree_yaml_node *shape
     const bool is_turned = strcmp(source, "turned") == 0, is_clump = strcmp(source, "clump") == 0;
     if (!is_file && !is_turned && !is_clump) check_shape_size(reader, shape, of, is_box);
     if (is_turned) check_profile(reader, shape, of);
-    if (is_clump) check_clump(reader, shape, of);
+    if (is_clump) check_clump(reader, shape, of, check_fill(reader, shapes, shape, of));
     else warn_unused_key(reader, shape, "spheres", of, "the source is not clump");
+    if (!is_clump) warn_unused_key(reader, shape, "fill", of, "the source is not clump");
 
     double triangles;
     const bool has_triangles = scree_rules_number(shape, "triangles", &triangles);
@@ -146,14 +171,14 @@ static void check_shape(scree_scene_reader *reader, const scree_yaml_node *shape
     if (!is_rock) warn_unused_key(reader, shape, "seed", of, "only rocks are drawn at random");
 }
 
-void scree_rules_check_shapes(scree_scene_reader *reader)
+void scree_rules_check_shapes(scree_scene_reader *reader, scree_rules_names *names)
 {
     const scree_yaml_node *shapes = scree_yaml_find(reader->root, "shapes");
     for (int64_t k = 0; k < scree_rules_num_items(shapes); ++k)
     {
         char of[40];
         snprintf(of, sizeof of, "shapes.%lld", (long long)k);
-        check_shape(reader, shapes->items[k], of);
+        check_shape(reader, names, shapes->items[k], of);
     }
 }
 

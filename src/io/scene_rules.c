@@ -411,7 +411,7 @@ void scree_scene_check_rules(scree_scene_reader *reader)
     scree_rules_scene scene = {.materials = &materials, .shapes = &shapes};
     check_laws(reader, &materials, &pairs);
     for (int64_t k = 0; k < materials.num; ++k) materials.names[k].is_used = false; // a law alone is no use
-    scree_rules_check_shapes(reader);
+    scree_rules_check_shapes(reader, &shapes);
     scree_rules_check_groups(reader, &scene);
     scree_rules_check_walls(reader, &scene);
     if (!reader->is_exhausted && !pairs.is_incomplete) check_meetings(reader, &pairs, &scene);

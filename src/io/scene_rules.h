@@ -52,7 +52,7 @@ typedef struct scree_rules_scene
     int64_t num_walls;
 } scree_rules_scene;
 
-void scree_rules_check_shapes(scree_scene_reader *reader);
+void scree_rules_check_shapes(scree_scene_reader *reader, scree_rules_names *names);
 void scree_rules_check_groups(scree_scene_reader *reader, scree_rules_scene *scene);
 void scree_rules_check_walls(scree_scene_reader *reader, scree_rules_scene *scene);
 

@@ -158,19 +158,38 @@ static const scree_scene_section profile_section = {
 static const cyaml_schema_value_t profile_value = {
     CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, scree_profile_point, profile_fields)};
 
-static const cyaml_schema_field_t clump_sphere_fields[] = {NUMBERS(scree_clump_sphere, position, 3),
-                                                           NUMBER(scree_clump_sphere, radius), CYAML_FIELD_END};
-static const scree_scene_key clump_sphere_keys[] = {
+static const cyaml_schema_field_t ball_fields[] = {NUMBERS(scree_clump_sphere, position, 3),
+                                                   NUMBER(scree_clump_sphere, radius), CYAML_FIELD_END};
+static const scree_scene_key ball_keys[] = {
     {.name = "position", .unit = "m", .min = -MAX_POSITION, .max = MAX_POSITION, .meaning = "of its centre"},
     {.name = "radius", .unit = "m", .min = 1e-12, .max = MAX_POSITION, .meaning = "of the sphere"},
 };
-static const scree_scene_section clump_sphere_section = {
+static const scree_scene_section ball_section = {
     "shapes[].spheres[]",
-    "Spheres of a clump, a rigid body. Mass and inertia are those of their union, in which each part of space counts "
-    "once; each sphere makes contacts of its own. They must hang together, and none may be wholly inside another.",
-    clump_sphere_fields, clump_sphere_keys, COUNT(clump_sphere_keys)};
-static const cyaml_schema_value_t clump_sphere_value = {
-    CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, scree_clump_sphere, clump_sphere_fields)};
+    "Spheres of a clump, a rigid body. Mass and inertia are those of their union; each sphere makes contacts of its "
+    "own. They must hang together, and none may be wholly inside another.",
+    ball_fields, ball_keys, COUNT(ball_keys)};
+static const cyaml_schema_value_t ball_value = {
+    CYAML_VALUE_MAPPING(CYAML_FLAG_DEFAULT, scree_clump_sphere, ball_fields)};
+
+static const cyaml_schema_field_t fill_fields[] = {TEXT(scree_clump_fill_def, shape),
+                                                   INTEGER(scree_clump_fill_def, spheres), CYAML_FIELD_END};
+static const scree_scene_key fill_keys[] = {
+    {.name = "shape",
+     .default_text = "\"\"",
+     .rule = SCREE_TEXT_OPTIONAL_NAME,
+     .meaning = "name of the shape whose mesh is filled"},
+    {.name = "spheres",
+     .unit = "1",
+     .default_text = "10",
+     .min = 1,
+     .max = SCREE_CLUMP_MAX_SPHERES,
+     .meaning = "how many: the largest one that fits, then one after the other what sticks out most of those before"},
+};
+static const scree_scene_section fill_section = {
+    "shapes[].fill",
+    "A clump made from a mesh: spheres inside it that touch its surface. The clump is smaller than the mesh.",
+    fill_fields, fill_keys, COUNT(fill_keys)};
 
 static const cyaml_schema_field_t shape_fields[] = {TEXT(scree_shape_def, name),
                                                     WORD(scree_shape_def, source, shape_sources),
@@ -180,7 +199,8 @@ static const cyaml_schema_field_t shape_fields[] = {TEXT(scree_shape_def, name),
                                                     INTEGER(scree_shape_def, seed),
                                                     LIST(scree_shape_def, profile, &profile_value),
                                                     INTEGER(scree_shape_def, segments),
-                                                    LIST(scree_shape_def, spheres, &clump_sphere_value),
+                                                    LIST(scree_shape_def, spheres, &ball_value),
+                                                    SECTION(scree_shape_def, fill, fill_fields),
                                                     NUMBERS(scree_shape_def, offset, 3),
                                                     INTEGER(scree_shape_def, copies),
                                                     CYAML_FIELD_END};
@@ -225,9 +245,13 @@ static const scree_scene_key shape_keys[] = {
      .meaning = "of turned: sides of the cross-sections, which have the area of the circle"},
     {.name = "spheres",
      .default_text = "[]",
-     .section = &clump_sphere_section,
+     .section = &ball_section,
      .max = SCREE_CLUMP_MAX_SPHERES,
      .meaning = "of clump: from 1 on. A clump has no mesh and cannot be a wall"},
+    {.name = "fill",
+     .default_text = "{}",
+     .section = &fill_section,
+     .meaning = "of clump: instead of spheres, a mesh to fill with them"},
     {.name = "offset",
      .unit = "m",
      .default_text = "[0, 0, 0]",
@@ -627,22 +651,9 @@ static const scree_scene_section repose_section = {
 
 static const cyaml_schema_field_t grid_fields[] = {NUMBERS(scree_region_def, min, 3), NUMBERS(scree_region_def, max, 3),
                                                    CYAML_FIELD_END};
-static const scree_scene_key grid_keys[] = {
-    {.name = "min",
-     .unit = "m",
-     .default_text = "[0, 0, 0]",
-     .min = -MAX_POSITION,
-     .max = MAX_POSITION,
-     .meaning = "lower corner"},
-    {.name = "max",
-     .unit = "m",
-     .default_text = "[0, 0, 0]",
-     .min = -MAX_POSITION,
-     .max = MAX_POSITION,
-     .meaning = "upper corner"},
-};
-static const scree_scene_section grid_section = {
-    "fields.region", "Box of the grid. What reaches out of it is left out.", grid_fields, grid_keys, COUNT(grid_keys)};
+static const scree_scene_section grid_section = {"fields.region",
+                                                 "Box of the grid. What reaches out of it is left out.", grid_fields,
+                                                 region_keys, 2}; // the corners alone
 
 static const cyaml_schema_field_t fields_fields[] = {TRUTH(scree_fields_def, measure),
                                                      SECTION(scree_fields_def, region, grid_fields),

@@ -153,8 +153,53 @@ static void test_faults(void)
         "shape of walls.0 is \"trio\", a clump, but walls are meshes; give it a shape of its own");
 }
 
+/// A cube, a ball and a rock filled: the largest sphere first, all inside, the more the fuller.
+static void test_filled_meshes(void)
+{
+    static const char *const meshes[] = {"source: box, size: 0.1", "source: sphere, size: 0.1, triangles: 320",
+                                         "source: rock, size: 0.1, triangles: 60, seed: 3"};
+    for (int m = 0; m < 3; ++m)
+    {
+        double last = 0;
+        for (int num = 1; num <= 64; num *= 8)
+        {
+            char text[2000];
+            snprintf(text, sizeof text,
+                     HEAD
+                     "  - {name: mesh, %s}\n  - {name: trio, source: clump, fill: {shape: mesh, spheres: %d}}\n"
+                     "particles:\n  - {name: one, shape: trio, material: stone, bodies: [{position: [0, 0, 0.2]}]}\n"
+                     "  - {name: two, shape: mesh, material: stone, bodies: [{position: [0.3, 0, 0.2]}]}\n",
+                     meshes[m], num);
+            scene_run run;
+            scene_run_start(&run, text);
+            if (run.simulation == NULL) return;
+            const scree_particles *p = &run.simulation->particles;
+            const double share = (double)p->mass[0] / (double)p->mass[1];
+            printf("%d spheres in %.30s: %.4f of the volume\n", num, meshes[m], share);
+            SCREE_CHECK_INT(run.simulation->shape_views[2].num_spheres, num);
+            SCREE_CHECK(share > last && share < 1);
+            if (m == 0 && num == 1) SCREE_CHECK_CLOSE(share, M_PI / 6, 1e-6);
+            last = share;
+            scene_run_end(&run);
+        }
+    }
+    SCREE_CHECK_CONTAINS(
+        messages_of(HEAD TRIO "  - {name: other, source: clump, fill: {shape: trio, spheres: 4}}\n" ONE),
+        "fill.shape of shapes.2 is \"trio\", which has no mesh to fill");
+    SCREE_CHECK_CONTAINS(messages_of(HEAD "  - {name: trio, source: clump, fill: {shape: flor, spheres: 4}}\n" ONE),
+                         "fill.shape of shapes.1 is \"flor\"");
+    SCREE_CHECK_CONTAINS(messages_of(HEAD "  - {name: trio, source: clump, fill: {shape: floor, spheres: 999}}\n" ONE),
+                         "spheres of shapes.1.fill is 999; it must be an integer in [1, 256]");
+    SCREE_CHECK_CONTAINS(messages_of(HEAD "  - {name: trio, source: clump, fill: {shape: floor}, spheres: [{position: "
+                                          "[0, 0, 0], radius: 0.1}]}\n" ONE),
+                         "spheres of shapes.1 are given, but so is fill; remove one of them");
+    SCREE_CHECK_CONTAINS(messages_of(HEAD "  - {name: trio, source: box, fill: {shape: floor}}\n" ONE),
+                         "fill of shapes.1 is not used: the source is not clump");
+}
+
 int main(void)
 {
+    SCREE_RUN(test_filled_meshes);
     SCREE_RUN(test_keys_reach_their_fields);
     SCREE_RUN(test_filled_without_contact);
     SCREE_RUN(test_time_step);

@@ -111,6 +111,7 @@ json_t *scree_bench_steps(scree_simulation *simulation, const scree_bench_reques
 extern const scree_bench_column scree_bench_step_columns[];
 extern const int scree_bench_num_step_columns;
 
+scree_status scree_bench_overlap(scree_bench *bench);
 scree_status scree_bench_broad_phase(scree_bench *bench);
 scree_status scree_bench_packing(scree_bench *bench);
 scree_status scree_bench_spheres(scree_bench *bench);

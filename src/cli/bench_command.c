@@ -14,6 +14,7 @@ static const char usage[] =
     "usage: scree bench NAME [options]\n"
     "\n"
     "Measures this machine. NAME is one of\n"
+    "  overlap      the overlap of two bodies of 4 to 1000 triangles: ways, stages, work\n"
     "  broad-phase  search for pairs among random boxes, stage by stage\n"
     "  packing      whole steps of dense beds at rest: cubes, Schoenhardt polyhedra, rocks of 28 and 40 triangles,\n"
     "               spheres\n"
@@ -22,12 +23,11 @@ static const char usage[] =
     "  scene        a scene from its start, part by part\n"
     "  scaling      beds of more and more particles on one and on more threads\n"
     "\n"
-    "  --particles N      bodies (broad-phase, scaling, rig: largest number)\n"
+    "  --particles N      bodies (overlap: pairs; broad-phase, scaling, rig: largest number)\n"
     "  --shape NAME       only cube, schoenhardt, rock or sphere (packing, scaling)\n"
     "  --triangles N      of rocks (packing, scaling); rig: at most so many\n"
-    "  --depth D          mean indentation of the touching pairs of a bed over the bounding diameter, default 1e-3; "
-    "spheres\n"
-    "                     5e-3; deeper beds have more pairs\n"
+    "  --depth D          mean indentation over the bounding diameter in a bed, default 1e-3, spheres 5e-3; deeper\n"
+    "                     beds have more pairs; overlap: of all pairs, default at random from 1e-4 to 5e-2\n"
     "  --steps N          in one repetition; rig: in all\n"
     "  --repetitions N    of each measurement; medians are told, and the spread (largest minus smallest)/median\n"
     "  --search-every N   steps between searches of candidate pairs in a bed, default 20; 0: none, for nothing moves\n"
@@ -54,9 +54,10 @@ typedef struct bench_kind
 } bench_kind;
 
 static const bench_kind kinds[] = {
-    {"broad-phase", scree_bench_broad_phase, 1000000, 1, 5}, {"packing", scree_bench_packing, 20000, 20, 5},
-    {"spheres", scree_bench_spheres, 50000, 20, 7},          {"rig", scree_bench_rig, 160, 10000, 1},
-    {"scaling", scree_bench_scaling, 100000, 20, 3},         {"scene", scree_bench_scene, 0, 0, 1},
+    {"overlap", scree_bench_overlap, 400, 1, 9},    {"broad-phase", scree_bench_broad_phase, 1000000, 1, 5},
+    {"packing", scree_bench_packing, 20000, 20, 5}, {"spheres", scree_bench_spheres, 50000, 20, 7},
+    {"rig", scree_bench_rig, 160, 10000, 1},        {"scaling", scree_bench_scaling, 100000, 20, 3},
+    {"scene", scree_bench_scene, 0, 0, 1},
 };
 enum
 {

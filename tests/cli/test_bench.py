@@ -82,7 +82,18 @@ def test_rig():
     assert all(case["steps"] == 5 and case["particles"] == 20 and set(case["stages"]) == STAGES for case in cases)
 
 
-def test_scene(tmp_path):
+def test_overlap():
+    cases = result_of("overlap", "--particles", 8, "--repetitions", 2)["cases"]
+    assert [case["name"] for case in cases] == [
+        "tetrahedron 4", "Schoenhardt 8", "cube 12", "sphere 40", "rock 40", "rock 100", "rock 300", "sphere 980",
+        "rock 1000"]
+    for case in cases:
+        assert {"frame", "filter", "crossings", "sums", "result"} == set(case["stages"])
+        # the overlap of two bodies that touch has an edge, and so two segments at least
+        assert case["work"]["segments"] >= 2 and case["general"] > 0 and case["hierarchy"] > 0
+
+
+def test_scene():
     arguments = ["--scene", "scenes/gravity_packing.yaml", "--set", "particles.fall.count=20", "--steps", 7]
     cases = result_of("scene", *arguments, "--parts", 3)["cases"]
     assert [case["steps"] for case in cases] == [2, 2, 3] and cases[0]["particles"] == 20

@@ -1,19 +1,16 @@
 /// \file bench_overlap.c
-/// Time of one overlap on one core for touching pairs of equal shapes at random orientations, indented by 1e-4 to 5e-2
-/// of their size (log-uniform). One table: the whole call by the default scheme with and without the convex path and by
-/// the hierarchy. Another: where the time of the general path goes, and how much work there is. Times are CPU times,
-/// the least of several rounds over all pairs, which go on in turn so that each way meets the same state of the
-/// machine. Usage: bench_overlap [number of pairs, default 2000] [depth over size, default at random as above]
-#define _POSIX_C_SOURCE 200809L
+/// scree bench overlap: time of one overlap on one core for touching pairs of equal shapes at random orientations,
+/// indented by 1e-4 to 5e-2 of their size (log-uniform), or by one depth. The whole call by the default scheme with and
+/// without the convex path and by the hierarchy; where the time of the general path goes, and how much work there is.
+/// Least of several rounds over all pairs, which go on in turn so that each way meets the same state of the machine.
+#include "cli/bench.h"
+#include "cli/mesh_argument.h"
 #include "contact/overlap_kernel.h"
-#include "polyhedra/generate.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
-
-/// Of the whole measurement, each over all pairs.
-#define NUM_ROUNDS 9
+#include <string.h>
 
 typedef struct bench_pairs
 {
@@ -21,15 +18,16 @@ typedef struct bench_pairs
     int num;
 } bench_pairs;
 
+static void stop_unless(bool is_well)
+{
+    if (is_well) return;
+    fprintf(stderr, "scree bench: not enough memory\n");
+    exit(1);
+}
+
 static uint64_t random_state = 20240611;
 
-static double uniform(void)
-{
-    uint64_t z = (random_state += 0x9e3779b97f4a7c15u);
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
-}
+static double uniform(void) { return scree_bench_uniform(&random_state); }
 
 /// Standard normal enough for directions: sum of twelve.
 static double normal(void)
@@ -37,13 +35,6 @@ static double normal(void)
     double sum = -6;
     for (int i = 0; i < 12; ++i) sum += uniform();
     return sum;
-}
-
-static double now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
 static scree_quat random_orientation(void)
@@ -60,7 +51,7 @@ static int compute(const scree_shape *shape, const scree_pose *a, const scree_po
     {
         scree_overlap_compute(&shape->view, a, &shape->view, b, options, workspace, result, 1);
         if (result->status != SCREE_OVERLAP_WORKSPACE_FULL) return result->status;
-        if (scree_overlap_workspace_grow(workspace) != SCREE_OK) exit(1);
+        stop_unless(scree_overlap_workspace_grow(workspace) == SCREE_OK);
     }
 }
 
@@ -100,20 +91,20 @@ static void make_pairs(const scree_shape *shape, scree_overlap_workspace *worksp
 
 /// Seconds of one call by each of several ways, in turn; the least of several rounds.
 static void time_ways(const scree_shape *shape, const bench_pairs *pairs, const scree_overlap_options *ways,
-                      int num_ways, scree_overlap_workspace *workspace, double *least)
+                      int num_ways, int num_rounds, scree_overlap_workspace *workspace, double *least)
 {
     for (int w = 0; w < num_ways; ++w) least[w] = 1e300;
-    for (int round = 0; round < NUM_ROUNDS; ++round)
+    for (int round = 0; round < num_rounds; ++round)
     {
         for (int w = 0; w < num_ways; ++w)
         {
-            const double start = now();
+            const double start = scree_bench_core_seconds();
             for (int i = 0; i < pairs->num; ++i)
             {
                 scree_overlap_result result;
                 compute(shape, pairs->a + i, pairs->b + i, ways + w, workspace, &result);
             }
-            const double time = (now() - start) / pairs->num;
+            const double time = (scree_bench_core_seconds() - start) / pairs->num;
             if (time < least[w]) least[w] = time;
         }
     }
@@ -143,11 +134,11 @@ static void run_stages(const scree_overlap_pair *pair, int last, scree_overlap_s
     const scree_team team = scree_team_alone();
     slice->lack = SCREE_LACK_NOTHING;
     if (scree_overlap_spheres_apart(pair) || !scree_overlap_set_up(pair, &setup) || last == STAGE_FRAME) return;
-    if (!scree_overlap_filter(&team, slice, &setup)) exit(1);
+    stop_unless(scree_overlap_filter(&team, slice, &setup));
     work->kept += slice->body[0].num_triangles + slice->body[1].num_triangles;
     if (last == STAGE_FILTER) return;
     scree_overlap_prepare(&team, slice, SCREE_OVERLAP_FILTERED);
-    if (!scree_overlap_collect(&team, slice, pair->shape)) exit(1);
+    stop_unless(scree_overlap_collect(&team, slice, pair->shape));
     work->segments += slice->num_segments;
     work->inside += slice->body[0].num_inside + slice->body[1].num_inside;
     if (last == STAGE_CROSSINGS) return;
@@ -168,25 +159,25 @@ static double count_triangle_pairs(const scree_overlap_slice *slice)
     return num;
 }
 
-static void time_stages(const scree_shape *shape, const bench_pairs *pairs, scree_overlap_workspace *workspace,
-                        double *least, bench_work *work)
+static void time_stages(const scree_shape *shape, const bench_pairs *pairs, int num_rounds,
+                        scree_overlap_workspace *workspace, double *least, bench_work *work)
 {
     // the workspace is its slice of buffers and nothing else
     scree_overlap_slice *slice = (scree_overlap_slice *)workspace;
     for (int stage = 0; stage < NUM_STAGES; ++stage) least[stage] = 1e300;
-    for (int round = 0; round < NUM_ROUNDS; ++round)
+    for (int round = 0; round < num_rounds; ++round)
     {
         for (int stage = 0; stage < NUM_STAGES; ++stage)
         {
             const bench_work none = {0, 0, 0, 0};
             *work = none;
-            const double start = now();
+            const double start = scree_bench_core_seconds();
             for (int i = 0; i < pairs->num; ++i)
             {
                 const scree_overlap_pair pair = {{&shape->view, &shape->view}, {pairs->a + i, pairs->b + i}};
                 run_stages(&pair, stage, slice, work);
             }
-            const double time = (now() - start) / pairs->num;
+            const double time = (scree_bench_core_seconds() - start) / pairs->num;
             if (time < least[stage]) least[stage] = time;
         }
     }
@@ -199,55 +190,84 @@ static void time_stages(const scree_shape *shape, const bench_pairs *pairs, scre
     }
 }
 
-static void bench_shape(const char *name, const scree_shape *shape, int num, double depth)
+/// Times of a shape as a case.
+static json_t *measure_shape(const scree_bench *bench, const char *name, const scree_shape *shape, int num)
 {
+    const int num_rounds = (int)bench->request->repetitions;
     scree_overlap_workspace *workspace = scree_overlap_workspace_create();
     bench_pairs pairs = {malloc((size_t)num * sizeof(scree_pose)), malloc((size_t)num * sizeof(scree_pose)), num};
-    if (workspace == NULL || pairs.a == NULL || pairs.b == NULL) exit(1);
-    make_pairs(shape, workspace, depth, &pairs);
+    stop_unless(workspace != NULL && pairs.a != NULL && pairs.b != NULL);
+    make_pairs(shape, workspace, bench->request->depth, &pairs);
     static const scree_overlap_options ways[] = {{SCREE_OVERLAP_FILTERED, false, true},
                                                  {SCREE_OVERLAP_FILTERED, false, false},
                                                  {SCREE_OVERLAP_HIERARCHY, false, false}};
     double whole[3], stages[NUM_STAGES];
     bench_work work;
-    time_ways(shape, &pairs, ways, 3, workspace, whole);
-    time_stages(shape, &pairs, workspace, stages, &work);
-    printf("%-12s %5d  %7.2f %7.2f %7.2f  |", name, shape->view.num_triangles, 1e6 * whole[0], 1e6 * whole[1],
-           1e6 * whole[2]);
-    for (int stage = 0; stage < NUM_STAGES; ++stage)
-        printf(" %6.2f", 1e6 * (stages[stage] - (stage > 0 ? stages[stage - 1] : 0)));
-    printf("  | %5.1f %6.1f %5.1f %5.1f\n", work.kept / num, work.pairs / num, work.segments / num, work.inside / num);
-    fflush(stdout);
+    time_ways(shape, &pairs, ways, 3, num_rounds, workspace, whole);
+    time_stages(shape, &pairs, num_rounds, workspace, stages, &work);
     free(pairs.a);
     free(pairs.b);
     scree_overlap_workspace_destroy(workspace);
+    for (int stage = NUM_STAGES - 1; stage > 0; --stage) stages[stage] -= stages[stage - 1];
+    char text[64];
+    snprintf(text, sizeof text, "%s %d", name, shape->view.num_triangles);
+    return json_pack("{s:s, s:i, s:i, s:i, s:f, s:f, s:f, s:f, s:{s:f, s:f, s:f, s:f, s:f}, s:{s:f, s:f, s:f, s:f}}",
+                     "name", text, "threads", 1, "particles", num, "triangles", shape->view.num_triangles,
+                     "core_seconds", whole[0], "spread", 0.0, "general", whole[1], "hierarchy", whole[2], "stages",
+                     "frame", stages[STAGE_FRAME], "filter", stages[STAGE_FILTER], "crossings", stages[STAGE_CROSSINGS],
+                     "sums", stages[STAGE_SUMS], "result", stages[STAGE_RESULT], "work", "kept", work.kept / num,
+                     "pairs", work.pairs / num, "segments", work.segments / num, "inside", work.inside / num);
 }
 
-static void bench_mesh(const char *name, scree_mesh *mesh, int num, double depth)
-{
-    scree_shape shape = {0};
-    if (scree_shape_create(&shape, mesh, SCREE_FRAME_PRINCIPAL) != SCREE_OK) exit(1);
-    scree_mesh_destroy(mesh);
-    bench_shape(name, &shape, num, depth);
-    scree_shape_destroy(&shape);
-}
+static const scree_bench_column columns[] = {
+    {"name", "[us]            ", 0, 0},
+    {"core_seconds", "default", 1e6, 2},
+    {"general", "general", 1e6, 2},
+    {"hierarchy", "hierarchy", 1e6, 2},
+    {"stages.frame", "frame", 1e6, 2},
+    {"stages.filter", "filter", 1e6, 2},
+    {"stages.crossings", "crossings", 1e6, 2},
+    {"stages.sums", " sums", 1e6, 2},
+    {"stages.result", "result", 1e6, 2},
+    {"work.kept", " kept", 1, 1},
+    {"work.pairs", "pairs", 1, 1},
+    {"work.segments", "segments", 1, 1},
+    {"work.inside", "inside", 1, 1},
+};
 
-int main(int argc, char **argv)
+/// A shape to measure, in the words of a command line; its pairs are a share of those asked for.
+typedef struct bench_mesh
 {
-    const int num = argc > 1 ? atoi(argv[1]) : 2000;
-    const double depth = argc > 2 ? atof(argv[2]) : 0;
-    const double cube[3] = {1, 1, 1};
-    printf("%-12s %5s  %7s %7s %7s  | %6s %6s %6s %6s %6s  | %5s %6s %5s %5s\n", "[us]", "faces", "default", "general",
-           "hierar.", "frame", "filter", "cross.", "sums", "result", "kept", "pairs", "segm.", "in");
-    scree_mesh mesh = {0};
-    if (scree_generate_tetrahedron(&mesh, 1) == SCREE_OK) bench_mesh("tetrahedron", &mesh, num, depth);
-    if (scree_generate_schoenhardt(&mesh, 1) == SCREE_OK) bench_mesh("Schoenhardt", &mesh, num, depth);
-    if (scree_generate_box(&mesh, cube) == SCREE_OK) bench_mesh("cube", &mesh, num, depth);
-    if (scree_generate_sphere(&mesh, 1, 40) == SCREE_OK) bench_mesh("sphere", &mesh, num, depth);
-    if (scree_generate_rock(&mesh, 1, 40, 0) == SCREE_OK) bench_mesh("rock", &mesh, num, depth);
-    if (scree_generate_rock(&mesh, 1, 100, 0) == SCREE_OK) bench_mesh("rock", &mesh, num, depth);
-    if (scree_generate_rock(&mesh, 1, 300, 0) == SCREE_OK) bench_mesh("rock", &mesh, num / 2, depth);
-    if (scree_generate_sphere(&mesh, 1, 980) == SCREE_OK) bench_mesh("sphere", &mesh, num, depth);
-    if (scree_generate_rock(&mesh, 1, 1000, 0) == SCREE_OK) bench_mesh("rock", &mesh, num / 4, depth);
-    return 0;
+    const char *name, *generator;
+    int share;
+} bench_mesh;
+
+static const bench_mesh meshes[] = {
+    {"tetrahedron", "tetrahedron:1", 1},
+    {"Schoenhardt", "schoenhardt:1", 1},
+    {"cube", "box:1:1:1", 1},
+    {"sphere", "sphere:1:40", 1},
+    {"rock", "rock:1:40", 1},
+    {"rock", "rock:1:100", 1},
+    {"rock", "rock:1:300", 2},
+    {"sphere", "sphere:1:980", 1},
+    {"rock", "rock:1:1000", 4},
+};
+
+scree_status scree_bench_overlap(scree_bench *bench)
+{
+    scree_bench_set_columns(bench, columns, (int)(sizeof columns / sizeof *columns));
+    scree_status status = SCREE_OK;
+    for (size_t k = 0; k < sizeof meshes / sizeof *meshes && status == SCREE_OK; ++k)
+    {
+        scree_mesh mesh = {0};
+        scree_shape shape = {0};
+        status = scree_mesh_generate(&mesh, meshes[k].generator, bench->report);
+        if (status == SCREE_OK) status = scree_shape_create(&shape, &mesh, SCREE_FRAME_PRINCIPAL);
+        scree_mesh_destroy(&mesh);
+        const int64_t num = bench->request->particles / meshes[k].share;
+        if (status == SCREE_OK) status = scree_bench_add(bench, measure_shape(bench, meshes[k].name, &shape, (int)num));
+        scree_shape_destroy(&shape);
+    }
+    return status;
 }

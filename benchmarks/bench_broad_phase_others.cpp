@@ -8,6 +8,7 @@
 #include <fcl/geometry/shape/box.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -18,12 +19,7 @@
 
 #include <omp.h>
 
-extern "C"
-{
-#include "bvh/broad_phase.h"
-#include "bvh/bvh_launch.h"
-#include "core/sort.h"
-}
+#include "broad_phase_scree.h"
 
 namespace
 {
@@ -36,6 +32,9 @@ double uniform(uint64_t &state)
     return double((z ^ (z >> 31)) >> 11) * 0x1p-53;
 }
 
+/// Lower corner, then upper.
+using Box = std::array<double, 6>;
+
 /// As in scree bench broad-phase.
 struct Kind
 {
@@ -45,24 +44,21 @@ struct Kind
 
 const Kind kinds[] = {{"size 1:2", 0.5, 1, 2.6}, {"size 1:1000", 0.001, 1, 0.55}, {"elongation 1:50", 0.5, 50, 0.12}};
 
-std::vector<scree_box> make_boxes(const Kind &kind, int64_t num)
+std::vector<Box> make_boxes(const Kind &kind, int64_t num)
 {
-    std::vector<scree_box> boxes(num);
+    std::vector<Box> boxes(num);
     uint64_t state = 1;
     const double extent = std::cbrt(double(num) * kind.volume_per_box);
-    for (scree_box &box : boxes)
+    for (Box &box : boxes)
     {
-        double lower[3], upper[3];
         const double size = kind.smallest * std::pow(1 / kind.smallest, uniform(state));
         for (int k = 0; k < 3; ++k)
         {
             const double middle = extent * (uniform(state) - 0.5);
             const double half = size * std::pow(kind.elongation, uniform(state) - 1);
-            lower[k] = middle - half;
-            upper[k] = middle + half;
+            box[k] = middle - half;
+            box[3 + k] = middle + half;
         }
-        box.lower = scree_vec3_make(lower[0], lower[1], lower[2]);
-        box.upper = scree_vec3_make(upper[0], upper[1], upper[2]);
     }
     return boxes;
 }
@@ -75,58 +71,36 @@ double now()
 }
 
 /// One search, with all that belongs to it: returns the number of pairs.
-using Search = std::function<int64_t(const std::vector<scree_box> &)>;
+using Search = std::function<int64_t(const std::vector<Box> &)>;
 
-scree_broad_phase broad_phase;
-scree_sort_buffers keys;
-
-void stop_unless(bool is_well)
+const double (*numbers_of(const std::vector<Box> &boxes))[6]
 {
-    if (is_well) return;
-    std::fprintf(stderr, "bench_broad_phase_others: not enough memory\n");
-    std::exit(EXIT_FAILURE);
+    return reinterpret_cast<const double(*)[6]>(boxes.data());
 }
 
-/// Tree and unsorted pairs: what the others do.
-int64_t search_scree(const std::vector<scree_box> &boxes)
+int64_t search_scree(const std::vector<Box> &boxes)
 {
-    const int64_t num = int64_t(boxes.size());
-    for (int64_t num_keys = 0;;)
-    {
-        num_keys = 0;
-        stop_unless(scree_lbvh_build(&broad_phase.tree, boxes.data(), num) == SCREE_OK);
-        scree_particle_pairs_args args = {};
-        args.tree = broad_phase.tree.view;
-        args.list = {keys.keys, &num_keys, keys.max_items, 31};
-        scree_particle_pairs_find(args);
-        if (num_keys <= keys.max_items) return num_keys;
-        stop_unless(scree_sort_reserve(&keys, num_keys, false) == SCREE_OK);
-    }
+    return scree_bench_search_unsorted(numbers_of(boxes), int64_t(boxes.size()));
 }
 
-/// The whole search as the step needs it: sorted pairs and a row of pairs for each box.
-int64_t search_scree_sorted(const std::vector<scree_box> &boxes)
+int64_t search_scree_sorted(const std::vector<Box> &boxes)
 {
-    scree_broad_phase_input input = {};
-    input.boxes = boxes.data();
-    input.num_particles = int64_t(boxes.size());
-    stop_unless(scree_broad_phase_find(&broad_phase, &input) == SCREE_OK);
-    return broad_phase.num_pairs;
+    return scree_bench_search_sorted(numbers_of(boxes), int64_t(boxes.size()));
 }
 
-int64_t search_cgal(const std::vector<scree_box> &boxes)
+int64_t search_cgal(const std::vector<Box> &boxes)
 {
-    using Box = CGAL::Box_intersection_d::Box_d<double, 3, CGAL::Box_intersection_d::ID_EXPLICIT>;
-    std::vector<Box> list;
+    using CgalBox = CGAL::Box_intersection_d::Box_d<double, 3, CGAL::Box_intersection_d::ID_EXPLICIT>;
+    std::vector<CgalBox> list;
     list.reserve(boxes.size());
-    for (const scree_box &b : boxes)
+    for (const Box &b : boxes)
     {
-        double lower[3] = {b.lower.x, b.lower.y, b.lower.z}, upper[3] = {b.upper.x, b.upper.y, b.upper.z};
+        double lower[3] = {b[0], b[1], b[2]}, upper[3] = {b[3], b[4], b[5]};
         list.emplace_back(lower, upper);
     }
     std::vector<std::pair<std::size_t, std::size_t>> pairs;
     CGAL::box_self_intersection_d(list.begin(), list.end(),
-                                  [&](const Box &a, const Box &b) { pairs.emplace_back(a.id(), b.id()); });
+                                  [&](const CgalBox &a, const CgalBox &b) { pairs.emplace_back(a.id(), b.id()); });
     return int64_t(pairs.size());
 }
 
@@ -141,23 +115,21 @@ bool count_pair(fcl::CollisionObjectd *a, fcl::CollisionObjectd *b, void *data)
 std::vector<std::unique_ptr<fcl::CollisionObjectd>> objects;
 std::vector<fcl::CollisionObjectd *> object_pointers;
 
-void make_objects(const std::vector<scree_box> &boxes)
+void make_objects(const std::vector<Box> &boxes)
 {
     objects.clear();
     object_pointers.clear();
-    for (const scree_box &b : boxes)
+    for (const Box &b : boxes)
     {
-        const auto shape =
-            std::make_shared<fcl::Boxd>(b.upper.x - b.lower.x, b.upper.y - b.lower.y, b.upper.z - b.lower.z);
-        const fcl::Vector3d middle(0.5 * (b.lower.x + b.upper.x), 0.5 * (b.lower.y + b.upper.y),
-                                   0.5 * (b.lower.z + b.upper.z));
+        const auto shape = std::make_shared<fcl::Boxd>(b[3] - b[0], b[4] - b[1], b[5] - b[2]);
+        const fcl::Vector3d middle(0.5 * (b[0] + b[3]), 0.5 * (b[1] + b[4]), 0.5 * (b[2] + b[5]));
         objects.push_back(std::make_unique<fcl::CollisionObjectd>(shape, fcl::Matrix3d::Identity(), middle));
         objects.back()->computeAABB();
         object_pointers.push_back(objects.back().get());
     }
 }
 
-int64_t search_fcl(const std::vector<scree_box> &)
+int64_t search_fcl(const std::vector<Box> &)
 {
     std::vector<std::pair<const void *, const void *>> pairs;
     fcl::DynamicAABBTreeCollisionManagerd manager;
@@ -169,7 +141,7 @@ int64_t search_fcl(const std::vector<scree_box> &)
 
 void measure(const Kind &kind, int64_t num, int num_repeats)
 {
-    const std::vector<scree_box> boxes = make_boxes(kind, num);
+    const std::vector<Box> boxes = make_boxes(kind, num);
     make_objects(boxes);
     const std::pair<const char *, Search> ways[] = {{"scree, unsorted", search_scree},
                                                     {"scree, sorted, with rows", search_scree_sorted},
@@ -193,7 +165,7 @@ void measure(const Kind &kind, int64_t num, int num_repeats)
         std::printf("%-16s %-30s %9.1f ms  %6.2f times the first  %lld pairs\n", kind.name, ways[w].first, 1e3 * median,
                     median / unit, (long long)num_pairs[w]);
         // middles and sizes of FCL's boxes are rounded, so a pair that just touches may differ
-        if (std::llabs(num_pairs[w] - num_pairs[0]) > num / 1000000 + 1)
+        if (num_pairs[w] < 0 || std::llabs(num_pairs[w] - num_pairs[0]) > num / 1000000 + 1)
         {
             std::fprintf(stderr, "bench_broad_phase_others: the numbers of pairs differ\n");
             std::exit(EXIT_FAILURE);

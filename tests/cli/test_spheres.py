@@ -108,6 +108,40 @@ def test_restart_gives_the_same_bits_and_frames(whole, tmp_path):
     assert np.array_equal(vtk_to_numpy(ours.GetPoints().GetData()), vtk_to_numpy(theirs.GetPoints().GetData()))
 
 
+TRIO = "spheres: [{position: [0, 0, 0], radius: 0.006}, {position: [0.007, 0, 0], radius: 0.005}, {position: [0, 0.008, 0], radius: 0.004}]"
+
+
+def test_clumps_are_rigid_points_in_the_same_file(tmp_path):
+    scene = SCENE.replace("{name: dice, source: box, size: 0.01}", "{name: dice, source: clump, " + TRIO + "}")
+    (tmp_path / "scene.yaml").write_text(scene)
+    run(tmp_path / "scene.yaml", "-o", tmp_path / "whole")
+    assert not (tmp_path / "whole/frames.vtkhdf").exists()
+    data = last_frame(tmp_path / "whole/spheres.vtkhdf")
+    particle = vtk_to_numpy(data.GetPointData().GetArray("particle"))
+    radius = vtk_to_numpy(data.GetPointData().GetArray("radius"))
+    points = vtk_to_numpy(data.GetPoints().GetData()).astype(float)
+    assert particle.tolist() == [*range(30), *np.repeat(range(30, 40), 3)]
+    heights = []
+    for i in range(30, 40):
+        own = points[particle == i]
+        sides = [np.linalg.norm(own[a] - own[b]) for a, b in ((0, 1), (0, 2), (1, 2))]
+        assert np.allclose(sides, [0.007, 0.008, np.hypot(0.007, 0.008)], rtol=1e-4)
+        assert np.allclose(radius[particle == i], [0.006, 0.005, 0.004], rtol=1e-6)
+        heights.append((own[:, 2] - radius[particle == i]).min())
+    assert min(heights) > -4e-4 and sum(height < 0.02 for height in heights) >= 2  # on the floor or on others, not in it
+    # restart and threads
+    run(tmp_path / "scene.yaml", "-o", tmp_path / "parts", "--set", "time.end=0.0131", "--threads", 2)
+    run(tmp_path / "scene.yaml", "-o", tmp_path / "parts", "--restart", "--threads", 2)
+    assert summary_of(tmp_path / "parts")["state_hash"] == summary_of(tmp_path / "whole")["state_hash"]
+    # a check says what it is made of, and a clump in two pieces is refused
+    wrong = scene.replace("position: [0, 0.008, 0]", "position: [0, 0.08, 0]")
+    (tmp_path / "wrong.yaml").write_text(wrong)
+    done = subprocess.run([PROGRAM, "check", str(tmp_path / "wrong.yaml")], text=True, capture_output=True, timeout=60)
+    assert done.returncode == 2 and "not connected: number 2" in done.stdout + done.stderr
+    done = subprocess.run([PROGRAM, "check", str(tmp_path / "scene.yaml")], text=True, capture_output=True, timeout=60)
+    assert done.returncode == 0 and "clumps: closed form" in done.stdout
+
+
 def test_picture_of_spheres(whole, tmp_path):
     matplotlib_image = pytest.importorskip("matplotlib.image")
     done = subprocess.run([sys.executable, "-B", str(PILE), str(whole), "-o", str(tmp_path / "pile.png")],

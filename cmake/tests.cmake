@@ -88,7 +88,7 @@ if("reference" IN_LIST SCREE_TEST_LABELS AND EXISTS ${CMAKE_SOURCE_DIR}/tests/re
 endif()
 # The CUDA side: on a GPU if this build has CUDA, else emulated. Without a GPU the tests of the former are skipped.
 if(SCREE_CUDA)
-    foreach(name test_features test_device test_kernels)
+    foreach(name test_features test_device test_kernels test_contact_kernels test_step)
         add_executable(${name}_on_gpu tests/cuda_on_cpu/${name}.cu)
         target_include_directories(${name}_on_gpu PRIVATE src tests tests/cuda_on_cpu)
         target_link_libraries(${name}_on_gpu PRIVATE scree scree_dependencies)

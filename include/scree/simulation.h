@@ -50,6 +50,16 @@ extern "C"
                                          scree_report *report);
     void scree_simulation_destroy(scree_simulation *simulation);
 
+    typedef struct scree_device scree_device;
+
+    /// From now on steps are done on a GPU, which must outlive the simulation; same bits. Particles and contacts here
+    /// are those of the last scree_simulation_observe(). Refused with a message: SCREE_OUT_OF_MEMORY if the scene does
+    /// not fit there, SCREE_DEVICE_FAILED, SCREE_INVALID_INPUT for the CPU or a second call.
+    scree_status scree_simulation_use_device(scree_simulation *simulation, scree_device *device, scree_report *report);
+    /// Brings particles and contacts up to date with the GPU that steps are done on; nothing on the CPU. Call before
+    /// anything is written or asked but time and counters. SCREE_DEVICE_FAILED, SCREE_OUT_OF_MEMORY.
+    scree_status scree_simulation_observe(scree_simulation *simulation, scree_report *report);
+
     /// Stages of a step, in their order.
 #define SCREE_STAGE_LIST(X)             \
     X(SCREE_STAGE_PREDICT, "predict")   \
@@ -83,7 +93,7 @@ extern "C"
     /// From now on every step adds its times to *times, which must outlive that; NULL stops it.
     void scree_simulation_time_stages(scree_simulation *simulation, scree_stage_times *times);
 
-    /// One step. SCREE_OUT_OF_MEMORY and SCREE_UNSTABLE lose the simulation.
+    /// One step. SCREE_OUT_OF_MEMORY, SCREE_UNSTABLE and SCREE_DEVICE_FAILED lose the simulation.
     scree_status scree_simulation_step(scree_simulation *simulation, scree_report *report);
 
     double scree_simulation_time(const scree_simulation *simulation);       ///< [s]

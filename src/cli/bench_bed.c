@@ -110,7 +110,7 @@ static scree_status create_tile(tile *t, const scree_shape_view *shape, int64_t 
         return SCREE_OUT_OF_MEMORY;
     }
     t->narrow_phase.options.use_convex_path = true;
-    t->narrow_phase.finds_separation = true;
+    t->narrow_phase.separation.finds = true;
     t->contacts.acts_in_points = shape->kind == SCREE_KIND_SPHERE;
     uint64_t state = 7;
     for (int64_t i = 0; i < t->num; ++i)

@@ -1,7 +1,8 @@
 /// \file check_command.c
 /// scree check: is a scene right, and what would running it mean? Nothing is written.
 #include "cli/commands.h"
-#include "dynamics/state.h"
+#include "cli/device_argument.h"
+#include "dynamics/on_device.h"
 #include "dynamics/time_step.h"
 #include "scree/scene.h"
 
@@ -18,12 +19,13 @@ static const char usage[] =
     "All faults of a scene are told at once. Nothing is written.\n"
     "\n"
     "  --set PATH=VALUE  replaces a value of the scene, like time.end=2 or particles.fill.count=100; can be repeated\n"
+    "  --device WHERE    cpu, cuda or cuda:N: also whether the scene fits into that NVIDIA GPU\n"
     "  --print           prints the scene with every default filled in instead of the plan\n"
     "  --help            this text\n"
     "\n"
     "The keys of scenes: scree --help scene. Exit code: 0 if the scene is right, 2 if it is refused, 1 if there is "
     "not\n"
-    "enough memory.\n";
+    "enough memory or no such GPU.\n";
 
 /// The command line, understood.
 typedef struct check_request
@@ -31,6 +33,7 @@ typedef struct check_request
     const char *path;
     const char **overrides; ///< (num_overrides)
     int num_overrides;
+    int32_t device; ///< number of a GPU; -1: the CPU
     bool is_print_only;
     bool wants_help;
 } check_request;
@@ -48,6 +51,12 @@ static bool parse_command_line(check_request *request, int argc, char **argv)
         const char *argument = argv[i];
         if (strcmp(argument, "--help") == 0 || strcmp(argument, "-h") == 0) return request->wants_help = true;
         if (strcmp(argument, "--print") == 0) request->is_print_only = true;
+        else if (strcmp(argument, "--device") == 0 || strncmp(argument, "--device=", 9) == 0)
+        {
+            const char *value = argument[8] == '=' ? argument + 9 : ++i < argc ? argv[i] : "";
+            if (!scree_parse_device(value, &request->device))
+                return refuse("--device needs cpu, cuda or cuda:N, not ", value);
+        }
         else if (strncmp(argument, "--set=", 6) == 0) request->overrides[request->num_overrides++] = argument + 6;
         else if (strcmp(argument, "--set") == 0)
         {
@@ -76,6 +85,17 @@ static void print_measures(const scree_simulation *simulation)
     putchar('\n');
 }
 
+/// Does the scene fit into a GPU?
+static scree_status check_device(const scree_simulation *simulation, int32_t number, scree_report *report)
+{
+    scree_device *device = NULL;
+    scree_status status = scree_open_device(number, &device, report);
+    if (status != SCREE_OK || device == NULL) return status;
+    scree_simulation_print_device_memory(simulation, device, stdout);
+    scree_device_close(device);
+    return status;
+}
+
 static scree_status check_scene(const check_request *request, scree_scene_file *file, scree_report *report)
 {
     scree_simulation *simulation = NULL;
@@ -90,13 +110,14 @@ static scree_status check_scene(const check_request *request, scree_scene_file *
     if (status != SCREE_OK) return status;
     scree_simulation_print_plan(simulation, stdout);
     print_measures(simulation);
+    status = check_device(simulation, request->device, report);
     scree_simulation_destroy(simulation);
     return status;
 }
 
 int scree_check_command(int argc, char **argv)
 {
-    check_request request = {.overrides = calloc((size_t)argc + 1, sizeof(const char *))};
+    check_request request = {.device = -1, .overrides = calloc((size_t)argc + 1, sizeof(const char *))};
     if (request.overrides == NULL) return SCREE_EXIT_FAILED;
     int exit_code = SCREE_EXIT_USAGE;
     if (parse_command_line(&request, argc, argv))
@@ -113,7 +134,9 @@ int scree_check_command(int argc, char **argv)
             if (status != SCREE_OK && num_faults == 0) fprintf(stderr, "scree check: %s\n", scree_status_text(status));
             if (num_faults > 0)
                 fprintf(stderr, "%s: refused, %d fault%s\n", request.path, num_faults, num_faults == 1 ? "" : "s");
-            if (status != SCREE_OK) exit_code = status == SCREE_OUT_OF_MEMORY ? SCREE_EXIT_FAILED : SCREE_EXIT_USAGE;
+            if (status != SCREE_OK)
+                exit_code =
+                    status == SCREE_OUT_OF_MEMORY || status == SCREE_NO_DEVICE ? SCREE_EXIT_FAILED : SCREE_EXIT_USAGE;
             scree_report_clear(&report);
             scree_scene_close(&file);
         }

@@ -2,6 +2,7 @@
 /// scree run: a scene into a folder, or on with what a folder holds.
 #define _POSIX_C_SOURCE 200809L
 #include "cli/commands.h"
+#include "cli/device_argument.h"
 #include "scree/io.h"
 
 #include <errno.h>
@@ -27,6 +28,7 @@ static const char usage[] =
     "bit\n"
     "  --replace         writes over a run that the folder holds\n"
     "  --threads N       number of threads; default: OMP_NUM_THREADS, or all cores. The result is the same for any\n"
+    "  --device WHERE    cpu, the default, or cuda or cuda:N, an NVIDIA GPU, N counted from 0. The result is the same\n"
     "  --set PATH=VALUE  replaces a value of the scene, like time.end=2 or particles.fill.count=100; can be repeated\n"
     "  --quiet           prints faults and warnings alone\n"
     "  --help            this text\n"
@@ -46,6 +48,7 @@ typedef struct run_request
     const char **overrides; ///< (num_overrides)
     int num_overrides;
     int num_threads; ///< 0: as OpenMP has it
+    int32_t device;  ///< number of a GPU; -1: the CPU
     bool restart, replace, is_quiet, wants_help;
 } run_request;
 
@@ -55,6 +58,8 @@ typedef struct run_state
     const run_request *request;
     scree_scene_file file;
     scree_simulation *simulation;
+    scree_device *device; ///< NULL: the CPU
+    bool is_lost;         ///< a step has failed: the state is half done
     scree_run_folder *folder;
     char *folder_path;
     scree_report report;
@@ -111,6 +116,8 @@ static bool parse_argument(run_request *request, int argc, char **argv, int *i)
     if (strcmp(argument, "--replace") == 0) return request->replace = true;
     if (strcmp(argument, "--quiet") == 0 || strcmp(argument, "-q") == 0) return request->is_quiet = true;
     if ((value = option_value("--threads", argc, argv, i)) != NULL) return parse_threads(request, value);
+    if ((value = option_value("--device", argc, argv, i)) != NULL)
+        return scree_parse_device(value, &request->device) || refuse("--device needs cpu, cuda or cuda:N, not ", value);
     if ((value = option_value("--set", argc, argv, i)) != NULL)
     {
         if (value[0] == '\0') return refuse("--set needs PATH=VALUE", "");
@@ -192,6 +199,7 @@ static void show_progress(run_state *run)
     run->shown_clock = now;
     run->shown_step = step;
 
+    if (!run->is_lost) scree_simulation_observe(run->simulation, &run->report);
     const scree_energies energies = scree_simulation_energies(simulation);
     const double share = num_steps > 0 ? (double)step / (double)num_steps : 1;
     char left[32], bar[21];
@@ -270,6 +278,7 @@ static void print_command_to_go_on(const run_state *run)
     fputs("go on with: scree run --restart -o", stdout);
     print_word(run->folder_path);
     if (request->num_threads > 0) printf(" --threads %d", request->num_threads);
+    if (request->device >= 0) printf(" --device cuda:%d", request->device);
     for (int k = 0; k < request->num_overrides; ++k)
     {
         fputs(" --set", stdout);
@@ -310,14 +319,20 @@ static scree_status write_outputs(run_state *run, int64_t step, bool is_last)
 {
     const scree_output_def *output = &run->file.scene.output;
     const double time_step = scree_simulation_time_step(run->simulation);
+    const bool wants_row = is_due(step, time_step, output->series) || (is_last && output->series > 0);
+    const bool wants_frame = is_due(step, time_step, output->frames) || (is_last && output->frames > 0);
+    const bool wants_checkpoint =
+        output->checkpoint > 0 && (is_last || (step > 0 && is_due(step, time_step, output->checkpoint)));
     scree_status status = SCREE_OK;
-    if (is_due(step, time_step, output->series) || (is_last && output->series > 0))
+    if (wants_row || wants_frame || wants_checkpoint || is_last)
+        status = scree_simulation_observe(run->simulation, &run->report);
+    if (status == SCREE_DEVICE_FAILED) run->is_lost = true;
+    if (status == SCREE_OK && wants_row)
         status = scree_run_folder_write_series(run->folder, run->simulation, &run->report);
-    if (status == SCREE_OK && (is_due(step, time_step, output->frames) || (is_last && output->frames > 0)))
+    if (status == SCREE_OK && wants_frame)
         status = scree_run_folder_write_frame(run->folder, run->simulation, &run->report);
     if (status == SCREE_OK) status = scree_run_folder_write_fields(run->folder, run->simulation, &run->report);
-    if (status == SCREE_OK && output->checkpoint > 0 &&
-        (is_last || (step > 0 && is_due(step, time_step, output->checkpoint))))
+    if (status == SCREE_OK && wants_checkpoint)
         status = scree_run_folder_write_checkpoint(run->folder, run->simulation, &run->report);
     return status;
 }
@@ -375,6 +390,9 @@ static scree_status prepare(run_state *run)
     scree_status status =
         scree_scene_read(&run->file, request->path, request->overrides, request->num_overrides, report);
     if (status != SCREE_OK) return status;
+    // before anything is computed for it
+    status = scree_open_device(request->device, &run->device, report);
+    if (status != SCREE_OK) return status;
     run->folder_path = request->folder != NULL ? strdup(request->folder) : default_folder(run->file.scene.name);
     if (run->folder_path == NULL) return SCREE_OUT_OF_MEMORY;
     status = scree_simulation_create(&run->simulation, &run->file.scene, run->file.folder, report);
@@ -382,6 +400,8 @@ static scree_status prepare(run_state *run)
     const scree_energies energies = scree_simulation_energies(run->simulation);
     run->initial_energy = scree_energies_balance(&energies);
     if (request->restart) status = load_checkpoint(run);
+    if (status == SCREE_OK && run->device != NULL)
+        status = scree_simulation_use_device(run->simulation, run->device, report);
     if (status != SCREE_OK) return status;
     run->start_step =
         (int64_t)(scree_simulation_time(run->simulation) / scree_simulation_time_step(run->simulation) + 0.5);
@@ -399,6 +419,7 @@ static scree_status advance(run_state *run)
     {
         if (stop_signal != 0) return SCREE_INTERRUPTED;
         status = scree_simulation_step(run->simulation, &run->report);
+        if (status != SCREE_OK) run->is_lost = true;
         if (status == SCREE_OK) status = write_outputs(run, step, step == num_steps);
         if (status != SCREE_OK) break;
         warn_of_time_step(run);
@@ -430,11 +451,30 @@ static void tell_result(run_state *run)
     printf("\nresults in %s\n", run->folder_path);
 }
 
+/// The end of a run whose state is lost, because it left the range of numbers, or memory or a GPU failed.
+static int conclude_lost(run_state *run, scree_status status)
+{
+    if (status == SCREE_UNSTABLE)
+        scree_report_add(&run->report,
+                         "the simulation is lost; the last checkpoint in %s is kept. Choose a smaller time.step, or "
+                         "auto, and run again with --replace",
+                         run->folder_path);
+    write_summary(run, "failed");
+    tell_report(run);
+    char *path = checkpoint_path(run);
+    const bool has_checkpoint = path != NULL && access(path, F_OK) == 0;
+    free(path);
+    if (status == SCREE_UNSTABLE) return SCREE_EXIT_FAILED;
+    printf("the simulation is lost; %s\n", has_checkpoint ? "the last checkpoint is kept" : "there is no checkpoint");
+    if (has_checkpoint) print_command_to_go_on(run);
+    return SCREE_EXIT_FAILED;
+}
+
 /// Last files and words; the exit code.
 static int conclude(run_state *run, scree_status status)
 {
     const bool is_quiet = run->request->is_quiet;
-    if (!is_quiet && status != SCREE_UNSTABLE && run->shown_clock > 0)
+    if (!is_quiet && !run->is_lost && run->shown_clock > 0)
     {
         show_progress(run);
         if (run->is_terminal) putchar('\n');
@@ -446,15 +486,7 @@ static int conclude(run_state *run, scree_status status)
         if (status == SCREE_OK && !is_quiet) tell_result(run);
         return status == SCREE_OK ? SCREE_EXIT_DONE : SCREE_EXIT_FAILED;
     }
-    if (status == SCREE_UNSTABLE)
-    {
-        scree_report_add(&run->report,
-                         "the simulation is lost; the last checkpoint in %s is kept. Choose a smaller time.step, or "
-                         "auto, and run again with --replace",
-                         run->folder_path);
-        write_summary(run, "failed");
-        return SCREE_EXIT_FAILED;
-    }
+    if (run->is_lost) return conclude_lost(run, status);
     // stopped in a sound state, by a signal or because a file could not be written: it is kept if that is possible
     const scree_status saved = scree_run_folder_write_checkpoint(run->folder, run->simulation, &run->report);
     if (saved == SCREE_OK) write_summary(run, "interrupted");
@@ -504,6 +536,7 @@ static int run_scene(const run_request *request)
         {
             scree_simulation_print_plan(run.simulation, stdout);
             printf("  into %s, %d threads", run.folder_path, omp_get_max_threads());
+            if (run.device != NULL) printf(", steps on GPU %d, \"%s\"", request->device, scree_device_name(run.device));
             if (run.start_step > 0) printf(", from step %lld on", (long long)run.start_step);
             putchar('\n');
             fflush(stdout);
@@ -517,6 +550,7 @@ static int run_scene(const run_request *request)
         exit_code = SCREE_EXIT_FAILED;
     tell_report(&run);
     scree_simulation_destroy(run.simulation);
+    scree_device_close(run.device);
     scree_scene_close(&run.file);
     free(run.folder_path);
     return exit_code;
@@ -526,7 +560,7 @@ int scree_run_command(int argc, char **argv)
 {
     // all files are closed by the time the program ends; after a full disk HDF5's own closing then would crash
     H5dont_atexit();
-    run_request request = {.overrides = calloc((size_t)argc + 1, sizeof(const char *))};
+    run_request request = {.device = -1, .overrides = calloc((size_t)argc + 1, sizeof(const char *))};
     if (request.overrides == NULL) return SCREE_EXIT_FAILED;
     int exit_code = SCREE_EXIT_USAGE;
     if (parse_command_line(&request, argc, argv))

@@ -1,8 +1,8 @@
 #include "contact/contact_list.h"
 
+#include "core/buffer.h"
+
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /// Every array of one entry per contact, by name.
 #define SCREE_CONTACT_ARRAYS(X) \
@@ -40,29 +40,39 @@
     X(torsion)                    \
     X(rolling_moment)
 
+/// A larger array in place of *array, of which the first num_kept items are kept.
+static bool grow(scree_device *device, void *array, int64_t num_kept, int64_t num_items, size_t item_size)
+{
+    void **items = array;
+    void *grown = scree_device_alloc(device, num_items, item_size);
+    if (grown == NULL) return false;
+    if (*items != NULL) scree_device_copy(device, grown, *items, (size_t)num_kept * item_size);
+    scree_device_free(device, *items);
+    *items = grown;
+    return true;
+}
+
 scree_status scree_contact_list_reserve(scree_contact_list *list, int64_t num_contacts, int64_t num_pairs)
 {
+    scree_device *device = list->device;
     if (num_pairs > list->max_pairs || list->first_of_pair == NULL)
     {
-        const int64_t max_pairs = num_pairs + num_pairs / 2 + 16;
-        int64_t *first = realloc(list->first_of_pair, (size_t)(max_pairs + 1) * sizeof *first);
-        if (first == NULL) return SCREE_OUT_OF_MEMORY;
-        if (list->first_of_pair == NULL) first[0] = 0;
-        list->first_of_pair = first;
+        const int64_t max_pairs = scree_buffer_grown(num_pairs);
+        const bool is_new = list->first_of_pair == NULL;
+        if (!grow(device, &list->first_of_pair, list->max_pairs + 1, max_pairs + 1, sizeof *list->first_of_pair))
+            return SCREE_OUT_OF_MEMORY;
+        if (is_new) scree_device_zero(device, list->first_of_pair, sizeof *list->first_of_pair);
         list->max_pairs = max_pairs;
     }
     if (num_contacts <= list->max_contacts) return SCREE_OK;
-    const int64_t max_contacts = num_contacts + num_contacts / 2 + 16;
-#define SCREE_GROW(array)                                                               \
-    {                                                                                   \
-        void *grown = realloc(list->array, (size_t)max_contacts * sizeof *list->array); \
-        if (grown == NULL) return SCREE_OUT_OF_MEMORY;                                  \
-        list->array = grown;                                                            \
-    }
+    const int64_t max_contacts = scree_buffer_grown(num_contacts);
+#define SCREE_GROW(array) \
+    if (!grow(device, &list->array, list->max_contacts, max_contacts, sizeof *list->array)) return SCREE_OUT_OF_MEMORY;
     SCREE_CONTACT_ARRAYS(SCREE_GROW)
 #undef SCREE_GROW
-#define SCREE_ZERO(array) \
-    memset(list->array + list->max_contacts, 0, (size_t)(max_contacts - list->max_contacts) * sizeof *list->array);
+#define SCREE_ZERO(array)                                       \
+    scree_device_zero(device, list->array + list->max_contacts, \
+                      (size_t)(max_contacts - list->max_contacts) * sizeof *list->array);
     if (list->acts_in_points)
     {
         SCREE_UNTOUCHED_ARRAYS(SCREE_ZERO)
@@ -72,13 +82,29 @@ scree_status scree_contact_list_reserve(scree_contact_list *list, int64_t num_co
     return SCREE_OK;
 }
 
+scree_status scree_contact_list_copy(scree_contact_list *to, const scree_contact_list *from)
+{
+    to->acts_in_points = from->acts_in_points;
+    const scree_status status = scree_contact_list_reserve(to, from->num_contacts, 0);
+    if (status != SCREE_OK) return status;
+    to->num_contacts = from->num_contacts;
+    const size_t num = (size_t)from->num_contacts;
+#define SCREE_COPY(array)                                                                                     \
+    if (to->device == NULL) scree_device_read(from->device, to->array, from->array, num * sizeof *to->array); \
+    else scree_device_write(to->device, to->array, from->array, num * sizeof *to->array);
+    SCREE_CONTACT_ARRAYS(SCREE_COPY)
+#undef SCREE_COPY
+    return SCREE_OK;
+}
+
 void scree_contact_list_destroy(scree_contact_list *list)
 {
-#define SCREE_FREE(array) free(list->array);
+    scree_device *device = list->device;
+#define SCREE_FREE(array) scree_device_free(device, list->array);
     SCREE_CONTACT_ARRAYS(SCREE_FREE)
 #undef SCREE_FREE
-    free(list->first_of_pair);
-    *list = (scree_contact_list){0};
+    scree_device_free(device, list->first_of_pair);
+    *list = (scree_contact_list){.device = device};
 }
 
 /// Order of contacts a and b by (i, j, patch): negative, zero or positive.

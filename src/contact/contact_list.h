@@ -10,13 +10,14 @@
 /// history never passes from one sphere to another.
 #define SCREE_PATCH_BITS 15
 
-/// Owns its arrays, all (num_contacts) unless stated. Start from {0}.
+/// Owns its arrays, all (num_contacts) unless stated. Start from {0}, or from {.device = ...} for a list on a GPU.
 /// i < j; j may be a wall (id num_particles + w). Vectors in world axes.
 typedef struct scree_contact_list
 {
     int64_t num_contacts;
     int64_t max_contacts;
     int64_t max_pairs;
+    scree_device *device;   ///< where the arrays lie, NULL: the CPU
     bool acts_in_points;    ///< all bodies are spheres and no law has moments: arrays marked * stay zero, untouched
     int64_t *first_of_pair; ///< (num_pairs + 1) contacts of candidate pair p are first_of_pair[p] .. [p + 1] - 1
 
@@ -51,10 +52,21 @@ typedef struct scree_contact_list
     scree_real *spring_energy;        ///< [J] of the tangential, the torsion and the rolling spring
 } scree_contact_list;
 
-/// Room for num_contacts and num_pairs, growing by half at least. SCREE_OUT_OF_MEMORY leaves the list as it was.
+/// The list as kernels get it: they have no use for the device.
+SCREE_FN scree_contact_list scree_contact_list_view(const scree_contact_list *list)
+{
+    scree_contact_list view = *list;
+    view.device = NULL;
+    return view;
+}
+
+/// Room for num_contacts and num_pairs, growing by half at least. SCREE_OUT_OF_MEMORY leaves what the list holds as it
+/// was.
 scree_status scree_contact_list_reserve(scree_contact_list *list, int64_t num_contacts, int64_t num_pairs);
+/// The contacts of one list to another, which may lie elsewhere; not which pairs they belong to. SCREE_OUT_OF_MEMORY.
+scree_status scree_contact_list_copy(scree_contact_list *to, const scree_contact_list *from);
 void scree_contact_list_destroy(scree_contact_list *list);
-/// Sorted by (i, j, patch), unique, normals unit, volumes positive. Faults go to the report.
+/// On the CPU: sorted by (i, j, patch), unique, normals unit, volumes positive. Faults go to the report.
 bool scree_contact_list_validate(const scree_contact_list *list, scree_report *report);
 
 #endif

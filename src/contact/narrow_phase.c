@@ -1,35 +1,11 @@
 #include "contact/narrow_phase.h"
 
-#include "contact/separating_direction_kernel.h"
+#include "contact/narrow_phase_launch.h"
 #include "contact/sphere_pairs.h"
 #include "core/buffer.h"
+#include "core/scan.h"
 
-#include <omp.h>
 #include <stdlib.h>
-#include <string.h>
-
-/// What is remembered of a candidate pair from step to step.
-typedef struct pair_memory
-{
-    scree_vec3 direction;   ///< that separated it last time, or zero
-    scree_real apart_until; ///< [m] sum of the travels of both bodies up to which it cannot touch
-    bool was_touching;      ///< at the last look
-} pair_memory;
-
-/// How the contacts of a pair are found, by the kinds of its shapes.
-typedef enum pair_kind
-{
-    MESH_MESH,
-    SPHERE_MESH, // or clump
-    SPHERE_SPHERE,
-    CLUMP_CLUMP, // or one of them a sphere
-    NUM_PAIR_KINDS
-} pair_kind;
-
-static const pair_kind kind_of_pair[SCREE_NUM_SHAPE_KINDS][SCREE_NUM_SHAPE_KINDS] = {
-    [SCREE_KIND_MESH] = {MESH_MESH, SPHERE_MESH, SPHERE_MESH},
-    [SCREE_KIND_SPHERE] = {SPHERE_MESH, SPHERE_SPHERE, CLUMP_CLUMP},
-    [SCREE_KIND_CLUMP] = {SPHERE_MESH, CLUMP_CLUMP, CLUMP_CLUMP}};
 
 /// The pairs of one kind, in ascending order.
 typedef struct pair_batch
@@ -41,18 +17,17 @@ typedef struct pair_batch
 /// Results of the pairs before they are compacted into the list. Nothing is kept for two spheres.
 struct scree_narrow_phase_buffers
 {
-    int32_t *num_contacts; ///< (max_pairs) of each candidate pair
-    int64_t max_pairs;
     int64_t num_sorted; ///< candidate pairs that the batches are made of; -1: they have changed
-    pair_batch batches[NUM_PAIR_KINDS];
+    pair_batch batches[SCREE_NUM_PAIR_KINDS];
+    scree_scan_scratch scan;
+    scree_pair_tally *tally;
 
     // two meshes
-    scree_overlap_workspace **workspaces; ///< (num_workspaces) one per thread
-    scree_narrow_phase_counts *counts;    ///< (num_workspaces)
-    int num_workspaces;
+    scree_overlap_pool pool;
     scree_overlap_result *results; ///< (num in batch, max_results)
     int32_t *num_results;          ///< (num in batch) as computed, may exceed max_results
-    pair_memory *memory;           ///< (num in batch)
+    int32_t *active;               ///< (num in batch)
+    scree_pair_memory *memory;     ///< (num in batch)
     int64_t max_mesh_pairs;
     int32_t max_results; ///< per pair
 
@@ -61,7 +36,6 @@ struct scree_narrow_phase_buffers
 
     // a sphere and a mesh
     scree_sphere_contact *found; ///< (num in batch, max_found)
-    uint8_t *is_inside;          ///< (num in batch)
     int64_t max_sphere_mesh_pairs;
     int32_t max_found; ///< per pair
 };
@@ -69,186 +43,22 @@ struct scree_narrow_phase_buffers
 void scree_narrow_phase_destroy(scree_narrow_phase *narrow_phase)
 {
     struct scree_narrow_phase_buffers *b = narrow_phase->buffers;
+    scree_device *device = narrow_phase->device;
     if (b != NULL)
     {
-        for (int t = 0; t < b->num_workspaces; ++t) scree_overlap_workspace_destroy(b->workspaces[t]);
-        for (int k = 0; k < NUM_PAIR_KINDS; ++k) free(b->batches[k].pairs);
-        free(b->num_contacts);
-        free(b->workspaces);
-        free(b->counts);
-        free(b->results);
-        free(b->num_results);
-        free(b->memory);
-        free(b->spheres);
-        free(b->found);
-        free(b->is_inside);
+        for (int k = 0; k < SCREE_NUM_PAIR_KINDS; ++k) scree_device_free(device, b->batches[k].pairs);
+        scree_scan_destroy(&b->scan);
+        scree_overlap_pool_destroy(&b->pool);
+        scree_device_free(device, b->tally);
+        scree_device_free(device, b->results);
+        scree_device_free(device, b->num_results);
+        scree_device_free(device, b->active);
+        scree_device_free(device, b->memory);
+        scree_device_free(device, b->spheres);
+        scree_device_free(device, b->found);
         free(b);
     }
-    *narrow_phase = (scree_narrow_phase){0};
-}
-
-/// One workspace per thread.
-static scree_status reserve_workspaces(struct scree_narrow_phase_buffers *b, int num_threads)
-{
-    if (b->num_workspaces >= num_threads) return SCREE_OK;
-    scree_overlap_workspace **workspaces = realloc(b->workspaces, (size_t)num_threads * sizeof *workspaces);
-    if (workspaces == NULL) return SCREE_OUT_OF_MEMORY;
-    b->workspaces = workspaces;
-    scree_narrow_phase_counts *counts = realloc(b->counts, (size_t)num_threads * sizeof *counts);
-    if (counts == NULL) return SCREE_OUT_OF_MEMORY;
-    b->counts = counts;
-    while (b->num_workspaces < num_threads)
-    {
-        workspaces[b->num_workspaces] = scree_overlap_workspace_create();
-        if (workspaces[b->num_workspaces] == NULL) return SCREE_OUT_OF_MEMORY;
-        ++b->num_workspaces;
-    }
-    return SCREE_OK;
-}
-
-/// Room for the results of `num` pairs of meshes. Growing forgets what is known of the pairs.
-static scree_status reserve_results(struct scree_narrow_phase_buffers *b, int64_t num, int32_t max_results)
-{
-    if (num <= b->max_mesh_pairs && max_results <= b->max_results) return SCREE_OK;
-    const int64_t max_pairs = num > b->max_mesh_pairs ? num + num / 2 + 16 : b->max_mesh_pairs;
-    if (max_results < b->max_results) max_results = b->max_results;
-    scree_overlap_result *results = malloc((size_t)max_pairs * (size_t)max_results * sizeof *results);
-    int32_t *num_results = malloc((size_t)max_pairs * sizeof *num_results);
-    pair_memory *memory = calloc((size_t)max_pairs, sizeof *memory);
-    if (results == NULL || num_results == NULL || memory == NULL)
-    {
-        free(results);
-        free(num_results);
-        free(memory);
-        return SCREE_OUT_OF_MEMORY;
-    }
-    free(b->results);
-    free(b->num_results);
-    free(b->memory);
-    b->results = results;
-    b->num_results = num_results;
-    b->memory = memory;
-    b->max_mesh_pairs = max_pairs;
-    b->max_results = max_results;
-    return SCREE_OK;
-}
-
-/// Room for what is found between `num` spheres and meshes.
-static scree_status reserve_found(struct scree_narrow_phase_buffers *b, int64_t num, int32_t max_found)
-{
-    if (num <= b->max_sphere_mesh_pairs && max_found <= b->max_found) return SCREE_OK;
-    const int64_t max_pairs = num > b->max_sphere_mesh_pairs ? num + num / 2 + 16 : b->max_sphere_mesh_pairs;
-    if (max_found < b->max_found) max_found = b->max_found;
-    scree_sphere_contact *found = malloc((size_t)max_pairs * (size_t)max_found * sizeof *found);
-    uint8_t *is_inside = malloc((size_t)max_pairs);
-    if (found == NULL || is_inside == NULL)
-    {
-        free(found);
-        free(is_inside);
-        return SCREE_OUT_OF_MEMORY;
-    }
-    free(b->found);
-    free(b->is_inside);
-    b->found = found;
-    b->is_inside = is_inside;
-    b->max_sphere_mesh_pairs = max_pairs;
-    b->max_found = max_found;
-    return SCREE_OK;
-}
-
-/// Candidate pairs to batches, after they have changed.
-static scree_status sort_pairs(struct scree_narrow_phase_buffers *b, const scree_bodies *bodies,
-                               const scree_candidate_pair *pairs, int64_t num_pairs)
-{
-    if (b->num_sorted == num_pairs) return SCREE_OK;
-    b->num_sorted = -1;
-    if (num_pairs > b->max_pairs || b->num_contacts == NULL)
-    {
-        free(b->num_contacts);
-        b->max_pairs = num_pairs + num_pairs / 2 + 16;
-        b->num_contacts = malloc((size_t)b->max_pairs * sizeof *b->num_contacts);
-        if (b->num_contacts == NULL) return SCREE_OUT_OF_MEMORY;
-    }
-    int64_t num[NUM_PAIR_KINDS] = {0};
-    for (int pass = 0; pass < 2; ++pass)
-    {
-        for (int k = 0; k < NUM_PAIR_KINDS; ++k)
-        {
-            pair_batch *batch = b->batches + k;
-            if (pass == 1 && num[k] > batch->max)
-            {
-                free(batch->pairs);
-                batch->max = num[k] + num[k] / 2 + 16;
-                batch->pairs = malloc((size_t)batch->max * sizeof *batch->pairs);
-                if (batch->pairs == NULL) return SCREE_OUT_OF_MEMORY;
-            }
-            batch->num = num[k];
-            num[k] = 0;
-        }
-        for (int64_t p = 0; p < num_pairs; ++p)
-        {
-            const int32_t i = bodies->shape[pairs[p].i], j = bodies->shape[pairs[p].j];
-            const pair_kind kind = kind_of_pair[bodies->shapes[i].kind][bodies->shapes[j].kind];
-            if (pass == 1) b->batches[kind].pairs[num[kind]] = (int32_t)p;
-            ++num[kind];
-        }
-    }
-    if (b->memory != NULL) memset(b->memory, 0, (size_t)b->max_mesh_pairs * sizeof *b->memory);
-    b->num_sorted = num_pairs;
-    return SCREE_OK;
-}
-
-/// Is the pair known to be apart, or found to be so now? The answer is proven, never a guess.
-static bool is_apart(const scree_narrow_phase *narrow_phase, const scree_bodies *bodies, scree_candidate_pair pair,
-                     pair_memory *memory)
-{
-    if (!narrow_phase->finds_separation) return false;
-    const scree_real travelled = bodies->travel[pair.i] + bodies->travel[pair.j];
-    if (narrow_phase->bounds_separation && travelled < memory->apart_until) return true;
-    if (!narrow_phase->remembers_separation) memory->direction = scree_vec3_make(0, 0, 0);
-    // contacts mostly last; the search would be in vain
-    else if (memory->was_touching) return false;
-    const scree_real gap =
-        scree_separation_search(bodies->shapes + bodies->shape[pair.i], bodies->pose + pair.i,
-                                bodies->shapes + bodies->shape[pair.j], bodies->pose + pair.j, &memory->direction);
-    // a hair less, for the rounding of the travels
-    memory->apart_until = travelled + gap * (scree_real)0.999;
-    return gap > 0;
-}
-
-/// Entry m of the batch of meshes, the pair p: overlap, as often as the workspace has to grow, and the counts of this
-/// thread.
-static scree_status find_overlap(scree_narrow_phase *narrow_phase, const scree_bodies *bodies,
-                                 const scree_candidate_pair *pairs, int64_t m, int thread)
-{
-    struct scree_narrow_phase_buffers *b = narrow_phase->buffers;
-    const int32_t p = b->batches[MESH_MESH].pairs[m];
-    const scree_candidate_pair pair = pairs[p];
-    scree_overlap_result *results = b->results + m * b->max_results;
-    b->num_results[m] = b->num_contacts[p] = 0;
-    if (is_apart(narrow_phase, bodies, pair, b->memory + m)) return SCREE_OK;
-    const scree_shape_view *shape_i = bodies->shapes + bodies->shape[pair.i];
-    const scree_shape_view *shape_j = bodies->shapes + bodies->shape[pair.j];
-    int32_t num;
-    for (;;)
-    {
-        num = scree_overlap_compute(shape_i, bodies->pose + pair.i, shape_j, bodies->pose + pair.j,
-                                    &narrow_phase->options, b->workspaces[thread], results, b->max_results);
-        if (num == 0 || results[0].status != SCREE_OVERLAP_WORKSPACE_FULL) break;
-        if (scree_overlap_workspace_grow(b->workspaces[thread]) != SCREE_OK) return SCREE_OUT_OF_MEMORY;
-    }
-    scree_narrow_phase_counts *counts = b->counts + thread;
-    b->num_results[m] = num;
-    b->memory[m].was_touching = num > 0 && results[0].status != SCREE_OVERLAP_NONE;
-    for (int32_t r = 0; r < num && r < b->max_results; ++r)
-    {
-        counts->num_without_normal += results[r].status == SCREE_OVERLAP_NO_NORMAL;
-        if (results[r].status != SCREE_OVERLAP_TOUCHING) continue;
-        ++b->num_contacts[p];
-        counts->num_fallbacks += results[r].used_fallback;
-        counts->worst_residual = scree_max(counts->worst_residual, results[r].residual);
-    }
-    return SCREE_OK;
+    *narrow_phase = (scree_narrow_phase){.device = device};
 }
 
 void scree_narrow_phase_forget(scree_narrow_phase *narrow_phase)
@@ -256,180 +66,270 @@ void scree_narrow_phase_forget(scree_narrow_phase *narrow_phase)
     if (narrow_phase->buffers != NULL) narrow_phase->buffers->num_sorted = -1;
 }
 
-/// The batch of meshes, with room for max_results per pair.
-static scree_status find_overlaps_once(scree_narrow_phase *narrow_phase, const scree_bodies *bodies,
-                                       const scree_candidate_pair *pairs)
+/// What belongs to the first search.
+static scree_status start(scree_narrow_phase *narrow_phase)
 {
     struct scree_narrow_phase_buffers *b = narrow_phase->buffers;
-    const int64_t num = b->batches[MESH_MESH].num;
-    for (int t = 0; t < b->num_workspaces; ++t) b->counts[t] = (scree_narrow_phase_counts){0};
-    int has_failed = 0;
-#pragma omp parallel for schedule(dynamic, 8) reduction(| : has_failed) if (num >= 16)
-    for (int64_t m = 0; m < num; ++m)
-        has_failed |= find_overlap(narrow_phase, bodies, pairs, m, omp_get_thread_num()) != SCREE_OK;
-
-    // sums of integers and maxima do not depend on which thread met what
-    scree_narrow_phase_counts total = {0};
-    for (int t = 0; t < b->num_workspaces; ++t)
-    {
-        total.num_without_normal += b->counts[t].num_without_normal;
-        total.num_fallbacks += b->counts[t].num_fallbacks;
-        total.worst_residual = scree_max(total.worst_residual, b->counts[t].worst_residual);
-    }
-    narrow_phase->counts = total;
-    return has_failed ? SCREE_OUT_OF_MEMORY : SCREE_OK;
+    if (b != NULL && b->tally != NULL) return SCREE_OK;
+    if (b == NULL) b = calloc(1, sizeof *b);
+    if (b == NULL) return SCREE_OUT_OF_MEMORY;
+    narrow_phase->buffers = b;
+    b->num_sorted = -1;
+    b->scan.device = b->pool.device = narrow_phase->device;
+    b->tally = scree_device_alloc(narrow_phase->device, 1, sizeof *b->tally);
+    return b->tally != NULL ? SCREE_OK : SCREE_OUT_OF_MEMORY;
 }
 
-static scree_status find_overlaps(scree_narrow_phase *narrow_phase, const scree_bodies *bodies,
-                                  const scree_candidate_pair *pairs)
+/// A new array in place of *array.
+static bool renew(scree_device *device, void *array, int64_t num, size_t size)
+{
+    void **items = array;
+    scree_device_free(device, *items);
+    *items = scree_device_alloc(device, num, size);
+    return *items != NULL;
+}
+
+/// Room for the results of the pairs of meshes. Growing forgets what is known of the pairs.
+static scree_status reserve_results(scree_narrow_phase *narrow_phase, int32_t max_results)
 {
     struct scree_narrow_phase_buffers *b = narrow_phase->buffers;
-    const int64_t num = b->batches[MESH_MESH].num;
-    narrow_phase->counts = (scree_narrow_phase_counts){0};
-    if (num == 0) return SCREE_OK;
-    scree_status status = reserve_workspaces(b, omp_get_max_threads());
-    int32_t max_results = narrow_phase->options.separate_patches ? 4 : 1;
-    for (bool is_complete = false; !is_complete;)
-    {
-        if (status == SCREE_OK) status = reserve_results(b, num, max_results);
-        if (status == SCREE_OK) status = find_overlaps_once(narrow_phase, bodies, pairs);
-        if (status != SCREE_OK) return status;
-        // a pair with more patches than there was room for asks for a second, roomier search
-        for (int64_t m = 0; m < num; ++m)
-            if (b->num_results[m] > max_results) max_results = b->num_results[m];
-        is_complete = max_results <= b->max_results;
-    }
+    scree_device *device = narrow_phase->device;
+    const int64_t num = b->batches[SCREE_PAIR_MESH_MESH].num;
+    if (num == 0 || (num <= b->max_mesh_pairs && max_results <= b->max_results)) return SCREE_OK;
+    const int64_t max = num > b->max_mesh_pairs ? scree_buffer_grown(num) : b->max_mesh_pairs;
+    if (max_results > b->max_results) b->max_results = max_results;
+    b->max_mesh_pairs = 0;
+    const bool is_complete = renew(device, &b->results, max, (size_t)b->max_results * sizeof *b->results) &&
+                             renew(device, &b->num_results, max, sizeof *b->num_results) &&
+                             renew(device, &b->active, max, sizeof *b->active) &&
+                             renew(device, &b->memory, max, sizeof *b->memory);
+    if (!is_complete) return SCREE_OUT_OF_MEMORY;
+    scree_device_zero(device, b->memory, (size_t)max * sizeof *b->memory);
+    b->max_mesh_pairs = max;
     return SCREE_OK;
+}
+
+/// Room for what is found between spheres and meshes.
+static scree_status reserve_found(scree_narrow_phase *narrow_phase, int32_t max_found)
+{
+    struct scree_narrow_phase_buffers *b = narrow_phase->buffers;
+    const int64_t num = b->batches[SCREE_PAIR_SPHERE_MESH].num;
+    if (num == 0 || (num <= b->max_sphere_mesh_pairs && max_found <= b->max_found)) return SCREE_OK;
+    const int64_t max = num > b->max_sphere_mesh_pairs ? scree_buffer_grown(num) : b->max_sphere_mesh_pairs;
+    if (max_found > b->max_found) b->max_found = max_found;
+    b->max_sphere_mesh_pairs = 0;
+    if (!renew(narrow_phase->device, &b->found, max, (size_t)b->max_found * sizeof *b->found))
+        return SCREE_OUT_OF_MEMORY;
+    b->max_sphere_mesh_pairs = max;
+    return SCREE_OK;
+}
+
+/// Slices for the overlaps.
+static scree_status reserve_slices(scree_narrow_phase *narrow_phase, scree_overlap_room room)
+{
+    struct scree_narrow_phase_buffers *b = narrow_phase->buffers;
+    const int64_t num = b->batches[SCREE_PAIR_MESH_MESH].num;
+    if (num == 0) return SCREE_OK;
+    const int64_t num_lanes = narrow_phase->num_lanes > 0 ? narrow_phase->num_lanes : 1;
+    return scree_overlap_pool_reserve(&b->pool, scree_device_concurrency(narrow_phase->device) / num_lanes, room);
+}
+
+/// What a search goes over.
+typedef struct search
+{
+    scree_narrow_phase *narrow_phase;
+    scree_bodies bodies;
+    const scree_candidate_pair *pairs; ///< (num_pairs)
+    int64_t num_pairs;
+    scree_contact_list *list;
+} search;
+
+/// Candidate pairs to batches, after they have changed. The list's array over pairs is not yet in use.
+static scree_status sort_pairs(const search *s)
+{
+    struct scree_narrow_phase_buffers *b = s->narrow_phase->buffers;
+    scree_device *device = s->narrow_phase->device;
+    if (b->num_sorted == s->num_pairs) return SCREE_OK;
+    b->num_sorted = -1;
+    scree_status status = scree_scan_reserve(&b->scan, s->num_pairs);
+    for (int k = 0; k < SCREE_NUM_PAIR_KINDS && status == SCREE_OK; ++k)
+    {
+        pair_batch *batch = b->batches + k;
+        scree_pair_kinds_args args = {s->bodies, s->pairs, s->list->first_of_pair, NULL, (scree_pair_kind)k};
+        scree_pair_flag_launch_on(device, args, s->num_pairs);
+        scree_scan_on(&b->scan, args.places, s->num_pairs);
+        batch->num = 0;
+        scree_device_read(device, &batch->num, args.places + s->num_pairs, sizeof batch->num);
+        if (batch->num == 0) continue;
+        status = scree_device_reserve(device, &batch->pairs, &batch->max, batch->num, sizeof *batch->pairs);
+        if (status != SCREE_OK) return status;
+        args.batch = batch->pairs;
+        scree_pair_scatter_launch_on(device, args, s->num_pairs);
+    }
+    if (status != SCREE_OK) return status;
+    if (b->memory != NULL) scree_device_zero(device, b->memory, (size_t)b->max_mesh_pairs * sizeof *b->memory);
+    b->num_sorted = s->num_pairs;
+    return SCREE_OK;
+}
+
+static scree_mesh_pairs_args mesh_args(const search *s)
+{
+    const struct scree_narrow_phase_buffers *b = s->narrow_phase->buffers;
+    scree_mesh_pairs_args args;
+    args.bodies = s->bodies;
+    args.pairs = s->pairs;
+    args.batch = b->batches[SCREE_PAIR_MESH_MESH].pairs;
+    args.memory = b->memory;
+    args.active = b->active;
+    args.results = b->results;
+    args.num_results = b->num_results;
+    args.max_results = b->max_results;
+    args.list = scree_contact_list_view(s->list);
+    args.tally = b->tally;
+    args.use = s->narrow_phase->separation;
+    return args;
+}
+
+static scree_sphere_pairs_args sphere_args(const search *s, scree_pair_kind kind)
+{
+    const struct scree_narrow_phase_buffers *b = s->narrow_phase->buffers;
+    scree_sphere_pairs_args args;
+    args.spheres = b->spheres;
+    args.shapes = s->bodies.shapes;
+    args.shape = s->bodies.shape;
+    args.pose = s->bodies.pose;
+    args.pairs = s->pairs;
+    args.batch = b->batches[kind].pairs;
+    args.list = scree_contact_list_view(s->list);
+    args.found = b->found;
+    args.max_found = b->max_found;
+    args.tally = b->tally;
+    return args;
 }
 
 /// All bodies as spheres, if two of them may meet.
-static scree_status place_spheres(struct scree_narrow_phase_buffers *b, const scree_bodies *bodies)
+static scree_status place_spheres(const search *s)
 {
-    if (b->batches[SPHERE_SPHERE].num == 0) return SCREE_OK;
-    if (bodies->num_bodies > b->max_bodies)
-    {
-        free(b->spheres);
-        b->max_bodies = bodies->num_bodies;
-        b->spheres = scree_buffer_alloc(b->max_bodies, sizeof *b->spheres);
-        if (b->spheres == NULL) return SCREE_OUT_OF_MEMORY;
-    }
-    const scree_place_spheres_args args = {bodies->shapes, bodies->shape, bodies->pose, b->spheres};
-    scree_place_spheres_launch(args, bodies->num_bodies);
+    struct scree_narrow_phase_buffers *b = s->narrow_phase->buffers;
+    scree_device *device = s->narrow_phase->device;
+    if (b->batches[SCREE_PAIR_SPHERE_SPHERE].num == 0) return SCREE_OK;
+    const int64_t num = s->bodies.num_bodies;
+    const scree_status status = scree_device_reserve(device, &b->spheres, &b->max_bodies, num, sizeof *b->spheres);
+    if (status != SCREE_OK) return status;
+    const scree_place_spheres_args args = {s->bodies.shapes, s->bodies.shape, s->bodies.pose, b->spheres};
+    scree_place_spheres_launch_on(device, args, num);
     return SCREE_OK;
 }
 
-static scree_status find_on_meshes(struct scree_narrow_phase_buffers *b, scree_sphere_pairs_args args)
+/// Overlaps of the pairs of meshes that may touch.
+static void find_overlaps(const search *s)
 {
-    const pair_batch *batch = b->batches + SPHERE_MESH;
-    int32_t max_found = 3;
-    for (bool is_complete = batch->num == 0; !is_complete;)
-    {
-        const scree_status status = reserve_found(b, batch->num, max_found);
-        if (status != SCREE_OK) return status;
-        args.batch = batch->pairs;
-        args.found = b->found;
-        args.is_inside = b->is_inside;
-        args.max_found = b->max_found;
-        scree_sphere_mesh_count_launch(args, batch->num);
-        // as above
-        for (int64_t m = 0; m < batch->num; ++m)
-            if (b->num_contacts[batch->pairs[m]] > max_found) max_found = b->num_contacts[batch->pairs[m]];
-        if (max_found >> SCREE_PATCH_BITS > 0) return SCREE_TOO_MANY;
-        is_complete = max_found <= b->max_found;
-    }
-    return SCREE_OK;
+    const struct scree_narrow_phase_buffers *b = s->narrow_phase->buffers;
+    scree_device *device = s->narrow_phase->device;
+    const int64_t num = b->batches[SCREE_PAIR_MESH_MESH].num;
+    if (num == 0) return;
+    const scree_mesh_pairs_args args = mesh_args(s);
+    scree_mesh_apart_launch_on(device, args, num);
+    scree_overlap_pairs_args overlaps;
+    overlaps.meshes = args;
+    overlaps.slices = b->pool.slices;
+    overlaps.options = s->narrow_phase->options;
+    // threads of the CPU take several at once, so that they meet seldom
+    overlaps.num_lanes = s->narrow_phase->num_lanes > 0 ? s->narrow_phase->num_lanes : 1;
+    overlaps.num_at_once = device == NULL ? 8 : 1;
+    const int64_t most = (num + overlaps.num_at_once - 1) / overlaps.num_at_once;
+    scree_overlap_pairs_launch_on(device, overlaps, most < b->pool.num_slices ? most : b->pool.num_slices);
 }
 
-/// Touching results of the meshes to the list.
-static void write_overlaps(const struct scree_narrow_phase_buffers *b, const scree_candidate_pair *pairs,
-                           scree_contact_list *list)
+/// How many contacts each pair has, added up in the list. Returns the counts of the search; what was found of a pair
+/// that had no room is not among them.
+static scree_pair_tally count_contacts(const search *s)
 {
-    const pair_batch *batch = b->batches + MESH_MESH;
-#pragma omp parallel for schedule(static) if (batch->num >= 1024)
-    for (int64_t m = 0; m < batch->num; ++m)
+    struct scree_narrow_phase_buffers *b = s->narrow_phase->buffers;
+    scree_device *device = s->narrow_phase->device;
+    scree_device_zero(device, b->tally, sizeof *b->tally);
+    find_overlaps(s);
+    scree_sphere_mesh_count_launch_on(device, sphere_args(s, SCREE_PAIR_SPHERE_MESH),
+                                      b->batches[SCREE_PAIR_SPHERE_MESH].num);
+    scree_sphere_sphere_count_launch_on(device, sphere_args(s, SCREE_PAIR_SPHERE_SPHERE),
+                                        b->batches[SCREE_PAIR_SPHERE_SPHERE].num);
+    scree_clump_clump_count_launch_on(device, sphere_args(s, SCREE_PAIR_CLUMP_CLUMP),
+                                      b->batches[SCREE_PAIR_CLUMP_CLUMP].num);
+    int64_t *first_of_pair = s->list->first_of_pair;
+    scree_scan_on(&b->scan, first_of_pair, s->num_pairs);
+    scree_device_copy(device, &b->tally->num_contacts, first_of_pair + s->num_pairs, sizeof *first_of_pair);
+    scree_pair_tally tally = {0};
+    scree_device_read(device, &tally, b->tally, sizeof tally);
+    return tally;
+}
+
+/// More room for what had none. False if all had.
+static bool make_room(const search *s, const scree_pair_tally *tally, scree_status *status)
+{
+    const struct scree_narrow_phase_buffers *b = s->narrow_phase->buffers;
+    const int32_t most_results = (int32_t)scree_maximum_value(tally->most_results);
+    const int32_t most_found = (int32_t)scree_maximum_value(tally->most_found);
+    scree_overlap_room room = b->pool.room;
+    if (tally->num_lacking[SCREE_LACK_PIECES] > 0) room.max_pieces *= 2;
+    if (tally->num_lacking[SCREE_LACK_SHAPE] > 0) room.max_shape *= 2;
+    if (tally->num_lacking[SCREE_LACK_CROSSINGS] > 0) room.max_crossings *= 2;
+    const int64_t num_lacking = tally->num_lacking[SCREE_LACK_PIECES] + tally->num_lacking[SCREE_LACK_SHAPE] +
+                                tally->num_lacking[SCREE_LACK_CROSSINGS];
+    if (num_lacking == 0 && most_results == 0 && most_found == 0) return false;
+    if (most_found >> SCREE_PATCH_BITS > 0)
     {
-        const int32_t p = batch->pairs[m];
-        int64_t c = list->first_of_pair[p];
-        for (int32_t r = 0; r < b->num_results[m]; ++r)
-        {
-            const scree_overlap_result *result = b->results + m * b->max_results + r;
-            if (result->status != SCREE_OVERLAP_TOUCHING) continue;
-            list->bodies[c] = pairs[p];
-            list->patch[c] = (int32_t)(c - list->first_of_pair[p]);
-            list->volume[c] = result->volume;
-            list->indentation[c] = result->indentation;
-            list->radius[c] = result->radius;
-            list->normal[c] = scree_vec3_negate(result->normal);
-            list->area_vector[c] = result->area_vector;
-            list->torque_vector[c] = result->torque_vector;
-            list->arm[c] = result->arm;
-            ++c;
-        }
+        *status = SCREE_TOO_MANY;
+        return true;
     }
+    *status = num_lacking > 0 ? reserve_slices(s->narrow_phase, room) : SCREE_OK;
+    if (*status == SCREE_OK && most_results > 0) *status = reserve_results(s->narrow_phase, most_results);
+    if (*status == SCREE_OK && most_found > 0) *status = reserve_found(s->narrow_phase, most_found);
+    return true;
 }
 
 /// Contacts of all pairs to the list, in the order of the pairs.
-static scree_status compact(const struct scree_narrow_phase_buffers *b, scree_sphere_pairs_args args, int64_t num_pairs,
-                            scree_contact_list *list)
+static scree_status write_contacts(const search *s, int64_t num_contacts)
 {
-    scree_status status = scree_contact_list_reserve(list, 0, num_pairs);
+    const pair_batch *batches = s->narrow_phase->buffers->batches;
+    scree_device *device = s->narrow_phase->device;
+    const scree_status status = scree_contact_list_reserve(s->list, num_contacts, s->num_pairs);
     if (status != SCREE_OK) return status;
-    int64_t num_contacts = 0;
-    for (int64_t p = 0; p < num_pairs; ++p)
-    {
-        list->first_of_pair[p] = num_contacts;
-        num_contacts += b->num_contacts[p];
-    }
-    list->first_of_pair[num_pairs] = num_contacts;
-    status = scree_contact_list_reserve(list, num_contacts, num_pairs);
-    if (status != SCREE_OK) return status;
-    list->num_contacts = num_contacts;
-
-    write_overlaps(b, args.pairs, list);
-    args.list = *list;
-    args.batch = b->batches[SPHERE_SPHERE].pairs;
-    scree_sphere_sphere_write_launch(args, b->batches[SPHERE_SPHERE].num);
-    args.batch = b->batches[CLUMP_CLUMP].pairs;
-    scree_clump_clump_write_launch(args, b->batches[CLUMP_CLUMP].num);
-    args.batch = b->batches[SPHERE_MESH].pairs;
-    args.found = b->found;
-    args.max_found = b->max_found;
-    scree_sphere_mesh_write_launch(args, b->batches[SPHERE_MESH].num);
+    s->list->num_contacts = num_contacts;
+    scree_mesh_write_launch_on(device, mesh_args(s), batches[SCREE_PAIR_MESH_MESH].num);
+    scree_sphere_sphere_write_launch_on(device, sphere_args(s, SCREE_PAIR_SPHERE_SPHERE),
+                                        batches[SCREE_PAIR_SPHERE_SPHERE].num);
+    scree_clump_clump_write_launch_on(device, sphere_args(s, SCREE_PAIR_CLUMP_CLUMP),
+                                      batches[SCREE_PAIR_CLUMP_CLUMP].num);
+    scree_sphere_mesh_write_launch_on(device, sphere_args(s, SCREE_PAIR_SPHERE_MESH),
+                                      batches[SCREE_PAIR_SPHERE_MESH].num);
     return SCREE_OK;
 }
 
 scree_status scree_narrow_phase_find(scree_narrow_phase *narrow_phase, const scree_bodies *bodies,
                                      const scree_candidate_pair *pairs, int64_t num_pairs, scree_contact_list *list)
 {
-    if (narrow_phase->buffers == NULL)
-    {
-        narrow_phase->buffers = calloc(1, sizeof *narrow_phase->buffers);
-        if (narrow_phase->buffers == NULL) return SCREE_OUT_OF_MEMORY;
-        narrow_phase->buffers->num_sorted = -1;
-    }
-    struct scree_narrow_phase_buffers *b = narrow_phase->buffers;
-    scree_sphere_pairs_args args = {0};
-    args.shapes = bodies->shapes;
-    args.shape = bodies->shape;
-    args.pose = bodies->pose;
-    args.pairs = pairs;
-    scree_status status = sort_pairs(b, bodies, pairs, num_pairs);
-    if (status == SCREE_OK) status = place_spheres(b, bodies);
-    args.num_contacts = b->num_contacts;
-    args.spheres = b->spheres;
-    if (status == SCREE_OK) status = find_overlaps(narrow_phase, bodies, pairs);
-    if (status == SCREE_OK) status = find_on_meshes(b, args);
-    if (status != SCREE_OK) return status;
-    args.batch = b->batches[SPHERE_SPHERE].pairs;
-    scree_sphere_sphere_count_launch(args, b->batches[SPHERE_SPHERE].num);
-    args.batch = b->batches[CLUMP_CLUMP].pairs;
-    scree_clump_clump_count_launch(args, b->batches[CLUMP_CLUMP].num);
-    status = compact(b, args, num_pairs, list);
-    if (status != SCREE_OK) return status;
+    const search s = {narrow_phase, *bodies, pairs, num_pairs, list};
+    const scree_overlap_room usual = {512, 1024, 128};
+    scree_status status = start(narrow_phase);
+    if (status == SCREE_OK) status = scree_contact_list_reserve(list, 0, num_pairs);
+    if (status == SCREE_OK) status = sort_pairs(&s);
+    if (status == SCREE_OK) status = reserve_results(narrow_phase, narrow_phase->options.separate_patches ? 4 : 1);
+    if (status == SCREE_OK) status = reserve_found(narrow_phase, 3);
+    if (status == SCREE_OK)
+        status = reserve_slices(narrow_phase, narrow_phase->room.max_pieces > 0 ? narrow_phase->room : usual);
+    if (status == SCREE_OK) status = place_spheres(&s);
 
-    scree_real largest = 0;
-    for (int64_t c = 0; c < list->num_contacts; ++c) largest = scree_max(largest, list->indentation[c]);
-    narrow_phase->counts.largest_indentation = largest;
-    for (int64_t m = 0; m < b->batches[SPHERE_MESH].num; ++m) narrow_phase->counts.num_inside += b->is_inside[m];
-    return SCREE_OK;
+    // a pair that had no room asks for a second, roomier search
+    scree_pair_tally tally = {0};
+    for (bool is_complete = false; !is_complete && status == SCREE_OK;)
+    {
+        tally = count_contacts(&s);
+        is_complete = !make_room(&s, &tally, &status);
+    }
+    if (status == SCREE_OK) status = write_contacts(&s, tally.num_contacts);
+    narrow_phase->counts.num_without_normal = tally.num_without_normal;
+    narrow_phase->counts.num_fallbacks = tally.num_fallbacks;
+    narrow_phase->counts.num_inside = tally.num_inside;
+    narrow_phase->counts.worst_residual = (scree_real)scree_maximum_value(tally.worst_residual);
+    return status;
 }

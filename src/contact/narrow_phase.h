@@ -10,7 +10,7 @@
 #define SCREE_NARROW_PHASE_H
 
 #include "contact/contact_list.h"
-#include "contact/overlap.h"
+#include "contact/overlap_pool.h"
 
 /// Bodies as the narrow phase sees them: particles first, then walls.
 typedef struct scree_bodies
@@ -22,6 +22,14 @@ typedef struct scree_bodies
     int64_t num_bodies;
 } scree_bodies;
 
+/// Work that is avoided for pairs of meshes that do not touch. All false: every pair goes to the overlap.
+typedef struct scree_separation_use
+{
+    bool finds;     ///< a plane between the two is looked for first
+    bool remembers; ///< the search for it starts with that of the last time
+    bool bounds;    ///< a pair is skipped until it may have travelled through its gap
+} scree_separation_use;
+
 /// What one search met.
 typedef struct scree_narrow_phase_counts
 {
@@ -29,16 +37,17 @@ typedef struct scree_narrow_phase_counts
     int64_t num_fallbacks;
     scree_real worst_residual;
     int64_t num_inside; ///< spheres or clumps with a centre of a sphere inside the solid of a mesh
-    scree_real largest_indentation;
 } scree_narrow_phase_counts;
 
-/// Owns a workspace per thread and the results per pair. Start from {0}.
+/// Owns the workspaces and the results per pair. Start from {0}, or from {.device = ...} for bodies, pairs and list on
+/// a GPU.
 typedef struct scree_narrow_phase
 {
+    scree_device *device;    ///< where all arrays lie, NULL: the CPU
+    scree_overlap_room room; ///< of an overlap, to begin with; 0: chosen
+    int32_t num_lanes;       ///< that work on an overlap together on a GPU, see scree_overlap_num_lanes(); 0: one
     scree_overlap_options options;
-    bool finds_separation;                      ///< false: every candidate pair of meshes goes to the overlap
-    bool remembers_separation;                  ///< the search for a direction starts with that of the last time
-    bool bounds_separation;                     ///< a pair is skipped until it may have travelled through its gap
+    scree_separation_use separation;
     scree_narrow_phase_counts counts;           ///< of the last search
     struct scree_narrow_phase_buffers *buffers; ///< internal
 } scree_narrow_phase;
@@ -47,7 +56,7 @@ typedef struct scree_narrow_phase
 void scree_narrow_phase_forget(scree_narrow_phase *narrow_phase);
 
 /// Finds the contacts of all candidate pairs and writes the geometry of `list`; forces and history are left alone.
-/// Same list for any number of threads. SCREE_OUT_OF_MEMORY.
+/// Same list for any number of threads and on a GPU. SCREE_OUT_OF_MEMORY.
 scree_status scree_narrow_phase_find(scree_narrow_phase *narrow_phase, const scree_bodies *bodies,
                                      const scree_candidate_pair *pairs, int64_t num_pairs, scree_contact_list *list);
 void scree_narrow_phase_destroy(scree_narrow_phase *narrow_phase);

@@ -1,20 +1,20 @@
 /// \file overlap_pairs_kernel.h
-/// Overlap of candidate pair p on the device, a team of lanes per pair.
+/// Overlaps of the pairs that may touch: an index of the launch stands for one who has buffers of its own and takes
+/// pairs until none is left; on a GPU for a team of lanes. Who computes a pair does not matter to its result.
 #ifndef SCREE_OVERLAP_PAIRS_KERNEL_H
 #define SCREE_OVERLAP_PAIRS_KERNEL_H
 
-#include "contact/narrow_phase.h"
+#include "contact/mesh_pairs_kernel.h"
 #include "contact/overlap_kernel.h"
 
 /// All pointers, those of the bodies too, in one memory.
 typedef struct scree_overlap_pairs_args
 {
-    scree_bodies bodies;
-    const scree_candidate_pair *pairs; ///< (num_pairs)
-    scree_overlap_slice *slices;       ///< (num_pairs) buffers, none shared
-    scree_overlap_result *results;     ///< (num_pairs)
+    scree_mesh_pairs_args meshes;
+    scree_overlap_slice *slices; ///< (num of the launch) buffers, none shared
     scree_overlap_options options;
-    int32_t num_lanes; ///< of the team for each pair, on a GPU: see scree_overlap_num_lanes(); no result depends on it
+    int64_t num_at_once; ///< pairs that are taken together
+    int32_t num_lanes;   ///< of a team on a GPU: see scree_overlap_num_lanes(); no result depends on it
 } scree_overlap_pairs_args;
 
 /// Lanes for pairs of shapes with so many triangles: few where few are kept, so that more pairs are under way at once.
@@ -23,23 +23,49 @@ SCREE_FN int32_t scree_overlap_num_lanes(int32_t num_triangles)
     return num_triangles < SCREE_LARGE_SHAPE ? 8 : num_triangles < 512 ? 16 : 32;
 }
 
-/// WORKSPACE_FULL stays in the result: the host enlarges that slice and launches such pairs again.
-SCREE_FN void scree_overlap_pairs_team_at(scree_overlap_pairs_args a, const scree_team *team, int64_t p)
+/// Entry m of the batch. Without enough room nothing but the lack is noted: the host makes room and launches again.
+SCREE_FN void scree_overlap_of_pair(const scree_overlap_pairs_args *a, const scree_team *team,
+                                    scree_overlap_slice *slice, int32_t m)
 {
-    const int32_t body[2] = {a.pairs[p].i, a.pairs[p].j};
+    const scree_mesh_pairs_args *meshes = &a->meshes;
+    const int32_t p = meshes->batch[m];
+    const int32_t body[2] = {meshes->pairs[p].i, meshes->pairs[p].j};
     scree_overlap_pair pair;
     for (int32_t side = 0; side < 2; ++side)
     {
-        pair.shape[side] = a.bodies.shapes + a.bodies.shape[body[side]];
-        pair.pose[side] = a.bodies.pose + body[side];
+        pair.shape[side] = meshes->bodies.shapes + meshes->bodies.shape[body[side]];
+        pair.pose[side] = meshes->bodies.pose + body[side];
     }
-    scree_overlap_team_compute(team, &pair, &a.options, a.slices + p, a.results + p, 1);
+    scree_overlap_result *results = meshes->results + (int64_t)m * meshes->max_results;
+    const int32_t num = scree_overlap_team_compute(team, &pair, &a->options, slice, results, meshes->max_results);
+    if (!scree_team_leads(team)) return;
+    if (results[0].status == SCREE_OVERLAP_WORKSPACE_FULL)
+        scree_atomic_count(meshes->tally->num_lacking + slice->lack, 1);
+    else scree_mesh_pair_note(meshes, m, num);
 }
 
-SCREE_FN void scree_overlap_pairs_at(scree_overlap_pairs_args a, int64_t p)
+SCREE_FN void scree_overlap_pairs_team_at(scree_overlap_pairs_args a, const scree_team *team, int64_t i)
+{
+    const int64_t num_active = a.meshes.tally->num_active;
+    for (;;)
+    {
+        // the one who leads takes for all; batches have indices of 32 bits
+        int32_t taken = 0;
+        if (scree_team_leads(team)) taken = (int32_t)scree_atomic_count(&a.meshes.tally->num_taken, a.num_at_once);
+        const int64_t begin = scree_team_sum(team, taken);
+        if (begin >= num_active) return;
+        for (int64_t k = begin; k < begin + a.num_at_once && k < num_active; ++k)
+        {
+            scree_overlap_of_pair(&a, team, a.slices + i, a.meshes.active[k]);
+            scree_team_sync(team);
+        }
+    }
+}
+
+SCREE_FN void scree_overlap_pairs_at(scree_overlap_pairs_args a, int64_t i)
 {
     const scree_team team = scree_team_alone();
-    scree_overlap_pairs_team_at(a, &team, p);
+    scree_overlap_pairs_team_at(a, &team, i);
 }
 
 #endif

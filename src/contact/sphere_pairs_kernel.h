@@ -9,7 +9,7 @@
 #define SCREE_SPHERE_PAIRS_KERNEL_H
 
 #include "contact/contact_list.h"
-#include "contact/narrow_phase.h"
+#include "contact/pair_tally.h"
 #include "contact/sphere_contact_kernel.h"
 
 typedef struct scree_place_spheres_args
@@ -36,13 +36,12 @@ typedef struct scree_sphere_pairs_args
     const scree_pose *pose;            ///< (num_bodies)
     const scree_candidate_pair *pairs; ///< (num_pairs) all candidate pairs
     const int32_t *batch;              ///< (num) indices of those that this launch is for
-    int32_t *num_contacts;             ///< (num_pairs) of each pair; written by the first pass, read by the second
-    scree_contact_list list;           ///< second pass: first_of_pair read, geometry written
+    scree_contact_list list;           ///< first pass: number of contacts to first_of_pair; second: geometry written
 
     // spheres and clumps on meshes
     scree_sphere_contact *found; ///< (num, max_found)
-    uint8_t *is_inside;          ///< (num) out: a centre is inside the solid
     int32_t max_found;
+    scree_pair_tally *tally; ///< centres inside the solid are counted, and the largest number found on one mesh noted
 } scree_sphere_pairs_args;
 
 typedef scree_sphere_pairs_args scree_sphere_sphere_count_args;
@@ -58,7 +57,7 @@ SCREE_FN void scree_sphere_sphere_count_at(scree_sphere_sphere_count_args a, int
 {
     const int32_t p = a.batch[b];
     const scree_sphere i = a.spheres[a.pairs[p].i], j = a.spheres[a.pairs[p].j];
-    a.num_contacts[p] = scree_spheres_touch(scree_vec3_sub(i.centre, j.centre), i.radius + j.radius);
+    a.list.first_of_pair[p] = scree_spheres_touch(scree_vec3_sub(i.centre, j.centre), i.radius + j.radius) ? 1 : 0;
 }
 
 /// Volume of a sphere's contact; R* is `effective_radius`.
@@ -139,13 +138,13 @@ SCREE_FN void scree_sphere_mesh_count_at(scree_sphere_mesh_count_args a, int64_t
     const bool is_first = a.shapes[a.shape[pair.i]].kind != SCREE_KIND_MESH; // is the sphere or clump
     const int32_t body = is_first ? pair.i : pair.j, mesh = is_first ? pair.j : pair.i;
     // sums are kept in memory, for the search on the mesh needs all registers
-    int32_t *num = a.num_contacts + a.batch[b];
+    int64_t *num = a.list.first_of_pair + a.batch[b];
+    bool is_any_inside = false;
     *num = 0;
-    a.is_inside[b] = 0;
     for (int32_t k = 0; k < a.shapes[a.shape[body]].num_spheres; ++k)
     {
         const scree_sphere sphere = scree_turned_sphere(a.shapes + a.shape[body], a.pose + body, k);
-        const int32_t first = *num < a.max_found ? *num : a.max_found;
+        const int32_t first = *num < a.max_found ? (int32_t)*num : a.max_found;
         scree_sphere_contact *found = a.found + b * a.max_found + first;
         bool is_inside;
         const int32_t added = scree_sphere_mesh_contacts(
@@ -154,22 +153,26 @@ SCREE_FN void scree_sphere_mesh_count_at(scree_sphere_mesh_count_args a, int64_t
             found, a.max_found - first, &is_inside);
         for (int32_t f = 0; f < added && first + f < a.max_found; ++f) found[f].sphere = k;
         *num += added;
-        if (is_inside) a.is_inside[b] = 1;
+        is_any_inside |= is_inside;
     }
+    if (is_any_inside) scree_atomic_count(&a.tally->num_inside, 1);
+    if (*num > a.max_found) scree_atomic_max(&a.tally->most_found, (scree_real)*num);
 }
 
 SCREE_FN void scree_sphere_mesh_write_at(scree_sphere_mesh_write_args a, int64_t b)
 {
     const int32_t p = a.batch[b];
-    if (a.num_contacts[p] == 0) return;
+    const int64_t begin = a.list.first_of_pair[p];
+    const int32_t num = (int32_t)(a.list.first_of_pair[p + 1] - begin);
+    if (num == 0) return;
     const scree_candidate_pair pair = a.pairs[p];
     const bool is_first = a.shapes[a.shape[pair.i]].kind != SCREE_KIND_MESH;
     const int32_t body = is_first ? pair.i : pair.j;
     const scree_vec3 to_body = scree_vec3_sub(a.pose[body].position, a.pose[pair.i].position);
     int32_t in_part = 0;
-    for (int32_t k = 0; k < a.num_contacts[p]; ++k)
+    for (int32_t k = 0; k < num; ++k)
     {
-        const int64_t c = a.list.first_of_pair[p] + k;
+        const int64_t c = begin + k;
         const scree_sphere_contact contact = a.found[b * a.max_found + k];
         const scree_sphere sphere = scree_turned_sphere(a.shapes + a.shape[body], a.pose + body, contact.sphere);
         in_part = k > 0 && a.found[b * a.max_found + k - 1].sphere == contact.sphere ? in_part + 1 : 0;
@@ -211,8 +214,7 @@ SCREE_FN int32_t scree_clump_clump_contacts(scree_sphere_pairs_args a, int32_t p
             ++num;
             if (!is_written) continue;
             const int64_t c = a.list.first_of_pair[p] + num - 1;
-            scree_sphere_contact contact;
-            scree_sphere_sphere_contact(to_mine, mine.radius + radius, &contact);
+            const scree_sphere_contact contact = scree_touching_spheres_contact(to_mine, mine.radius + radius);
             const scree_vec3 normal = scree_mat3_apply(rotation_j, contact.normal);
             a.list.bodies[c] = pair;
             a.list.patch[c] = (k * shape_j->num_spheres + m) << SCREE_PATCH_BITS;
@@ -229,12 +231,13 @@ SCREE_FN int32_t scree_clump_clump_contacts(scree_sphere_pairs_args a, int32_t p
 
 SCREE_FN void scree_clump_clump_count_at(scree_clump_clump_count_args a, int64_t b)
 {
-    a.num_contacts[a.batch[b]] = scree_clump_clump_contacts(a, a.batch[b], false);
+    a.list.first_of_pair[a.batch[b]] = scree_clump_clump_contacts(a, a.batch[b], false);
 }
 
 SCREE_FN void scree_clump_clump_write_at(scree_clump_clump_write_args a, int64_t b)
 {
-    if (a.num_contacts[a.batch[b]] > 0) scree_clump_clump_contacts(a, a.batch[b], true);
+    const int32_t p = a.batch[b];
+    if (a.list.first_of_pair[p + 1] > a.list.first_of_pair[p]) scree_clump_clump_contacts(a, p, true);
 }
 
 #endif

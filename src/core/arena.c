@@ -69,6 +69,14 @@ bool scree_arena_give_back(scree_arena *arena, void *address)
     return false;
 }
 
+int64_t scree_arena_free_bytes(const scree_arena *arena)
+{
+    int64_t num_bytes = 0;
+    for (int64_t k = 0; k < arena->num_pieces; ++k)
+        if (arena->pieces[k].is_free) num_bytes += arena->pieces[k].num_bytes;
+    return num_bytes;
+}
+
 void scree_arena_destroy(scree_arena *arena)
 {
     free(arena->pieces);

@@ -37,6 +37,8 @@ extern "C"
     void *scree_arena_take(scree_arena *arena, int64_t num_bytes);
     /// Gives a piece back; false if `address` is not one that was taken.
     bool scree_arena_give_back(scree_arena *arena, void *address);
+    /// Bytes of all free pieces.
+    int64_t scree_arena_free_bytes(const scree_arena *arena);
     void scree_arena_destroy(scree_arena *arena);
 
 #ifdef __cplusplus

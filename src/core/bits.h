@@ -15,4 +15,28 @@ SCREE_FN int32_t scree_lowest_bit(uint64_t word)
 #endif
 }
 
+/// The bits of a number.
+SCREE_FN uint64_t scree_bits_of(double number)
+{
+#ifdef __CUDA_ARCH__
+    return (uint64_t)__double_as_longlong(number);
+#else
+    uint64_t bits;
+    __builtin_memcpy(&bits, &number, sizeof bits);
+    return bits;
+#endif
+}
+
+/// The number of these bits.
+SCREE_FN double scree_number_of(uint64_t bits)
+{
+#ifdef __CUDA_ARCH__
+    return __longlong_as_double((long long)bits);
+#else
+    double number;
+    __builtin_memcpy(&number, &bits, sizeof number);
+    return number;
+#endif
+}
+
 #endif

@@ -7,6 +7,9 @@
 
 #include <stdlib.h>
 #include <string.h>
+#ifdef _OPENMP
+#include <omp.h>
+#endif
 
 scree_device_def scree_default_device_def(void)
 {
@@ -38,6 +41,51 @@ scree_status scree_device_status(scree_device *device, scree_report *report)
     if (device != NULL) SCREE_CUDA_CALL(status = scree_cuda_status(device, report));
     (void)report;
     return status;
+}
+
+int64_t scree_device_concurrency(scree_device *device)
+{
+#ifdef _OPENMP
+    int64_t num = omp_get_max_threads();
+#else
+    int64_t num = 1;
+#endif
+    if (device != NULL) SCREE_CUDA_CALL(num = scree_cuda_concurrency(device));
+    return num;
+}
+
+int64_t scree_device_free_memory(scree_device *device)
+{
+    int64_t num_bytes = INT64_MAX;
+    if (device != NULL) SCREE_CUDA_CALL(num_bytes = scree_cuda_free_memory(device));
+    return num_bytes;
+}
+
+bool scree_device_take(scree_device *device, int64_t num_bytes)
+{
+    bool is_taken = true;
+    if (device != NULL) SCREE_CUDA_CALL(is_taken = scree_cuda_take(device, num_bytes));
+    (void)num_bytes;
+    return is_taken;
+}
+
+const char *scree_device_name(const scree_device *device)
+{
+    const char *name = "CPU";
+    if (device != NULL) SCREE_CUDA_CALL(name = scree_cuda_name(device));
+    return name;
+}
+
+scree_status scree_device_reserve(scree_device *device, void *array, int64_t *max_items, int64_t num_items,
+                                  size_t item_size)
+{
+    void **items = array;
+    if (num_items <= *max_items && *items != NULL) return SCREE_OK;
+    const int64_t grown = scree_buffer_grown(num_items);
+    scree_device_free(device, *items);
+    *items = scree_device_alloc(device, grown, item_size);
+    *max_items = *items != NULL ? grown : 0;
+    return *items != NULL ? SCREE_OK : SCREE_OUT_OF_MEMORY;
 }
 
 void *scree_device_alloc(scree_device *device, int64_t num_items, size_t item_size)

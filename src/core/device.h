@@ -33,6 +33,16 @@ extern "C"
     /// Waits. SCREE_OK, or SCREE_DEVICE_FAILED with a message.
     scree_status scree_device_status(scree_device *device, scree_report *report);
 
+    /// How many bodies of a kernel can be under way at once: threads of OpenMP, or of the GPU's multiprocessors.
+    int64_t scree_device_concurrency(scree_device *device);
+    /// Free memory of a GPU [bytes], what its arena has left included; INT64_MAX for the CPU.
+    int64_t scree_device_free_memory(scree_device *device);
+    /// Takes memory of a GPU for arrays to come, all at once; false if there is not so much. Nothing on the CPU, or
+    /// where every array is taken by itself.
+    bool scree_device_take(scree_device *device, int64_t num_bytes);
+    /// Name of a GPU; "CPU" for NULL.
+    const char *scree_device_name(const scree_device *device);
+
     /// Uninitialised memory for num_items. Never NULL but if memory is out or the size overflows; 0 items get memory
     /// too.
     void *scree_device_alloc(scree_device *device, int64_t num_items, size_t item_size);
@@ -45,6 +55,11 @@ extern "C"
     /// Copies within the device; the two must not overlap.
     void scree_device_copy(scree_device *device, void *to, const void *from, size_t num_bytes);
     void scree_device_zero(scree_device *device, void *memory, size_t num_bytes);
+
+    /// Room for num_items of item_size bytes behind *array, growing by half at least; contents are not kept.
+    /// SCREE_OUT_OF_MEMORY leaves *array NULL and *max_items 0.
+    scree_status scree_device_reserve(scree_device *device, void *array, int64_t *max_items, int64_t num_items,
+                                      size_t item_size);
 
 #ifdef __cplusplus
 }

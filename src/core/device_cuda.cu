@@ -10,6 +10,9 @@
 /// Compute capability that scree is compiled for, at least: 8.0 stands for 80.
 #define SCREE_CUDA_CAPABILITY 80
 
+/// Threads of a kernel with all the registers there are that a multiprocessor holds: 65536/255, in whole warps.
+#define SCREE_CUDA_RESIDENT 256
+
 /// The message to an error of the first calls.
 static scree_status refuse(cudaError_t error, int number, scree_report *report)
 {
@@ -66,8 +69,9 @@ static scree_status find_device(int number, cudaDeviceProp *properties, scree_re
 /// One more block of memory for the arena, of num_bytes at least.
 static bool add_block(scree_device *device, int64_t num_bytes)
 {
-    // as much again as there is, so that growing costs little in all; less if there is no more
-    int64_t wanted = device->arena.num_bytes > device->arena_bytes ? device->arena.num_bytes : device->arena_bytes;
+    // half as much again as there is, so that growing costs little in all; less if there is no more
+    int64_t wanted =
+        device->arena.num_bytes / 2 > device->arena_bytes ? device->arena.num_bytes / 2 : device->arena_bytes;
     if (wanted < num_bytes || device->arena_bytes == 0) wanted = num_bytes;
     void *block = NULL;
     if (cudaMalloc(&block, (size_t)wanted) != cudaSuccess)
@@ -94,6 +98,7 @@ scree_status scree_cuda_open(scree_device **device, const scree_device_def *def,
     if (d == NULL) return SCREE_OUT_OF_MEMORY;
     d->block = def->block;
     d->arena_bytes = def->arena_bytes;
+    d->concurrency = (int64_t)properties.multiProcessorCount * SCREE_CUDA_RESIDENT;
     memcpy(d->name, properties.name, sizeof d->name);
     const cudaError_t error = cudaStreamCreate(&d->stream);
     if (error != cudaSuccess)
@@ -132,6 +137,23 @@ scree_status scree_cuda_status(scree_device *device, scree_report *report)
                      "the CPU",
                      device->name, cudaGetErrorString(device->error));
     return SCREE_DEVICE_FAILED;
+}
+
+int64_t scree_cuda_concurrency(scree_device *device) { return device->concurrency; }
+
+const char *scree_cuda_name(const scree_device *device) { return device->name; }
+
+int64_t scree_cuda_free_memory(scree_device *device)
+{
+    size_t num_free = 0, num_total = 0;
+    scree_cuda_note(device, cudaMemGetInfo(&num_free, &num_total));
+    return (int64_t)num_free + scree_arena_free_bytes(&device->arena);
+}
+
+bool scree_cuda_take(scree_device *device, int64_t num_bytes)
+{
+    if (device->arena_bytes == 0 || num_bytes <= scree_arena_free_bytes(&device->arena)) return true;
+    return add_block(device, num_bytes);
 }
 
 void *scree_cuda_alloc(scree_device *device, int64_t num_bytes)

@@ -14,6 +14,7 @@ struct scree_device
     int32_t block;
     cudaError_t error; ///< the first one; nothing is done after it
     int64_t arena_bytes;
+    int64_t concurrency; ///< threads that its multiprocessors hold, as far as registers of large kernels allow
     scree_arena arena;
     char name[256];
 };

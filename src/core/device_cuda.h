@@ -21,6 +21,10 @@ extern "C"
     scree_status scree_cuda_open(scree_device **device, const scree_device_def *def, scree_report *report);
     void scree_cuda_close(scree_device *device);
     scree_status scree_cuda_status(scree_device *device, scree_report *report);
+    int64_t scree_cuda_concurrency(scree_device *device);
+    int64_t scree_cuda_free_memory(scree_device *device);
+    bool scree_cuda_take(scree_device *device, int64_t num_bytes);
+    const char *scree_cuda_name(const scree_device *device);
     void *scree_cuda_alloc(scree_device *device, int64_t num_bytes);
     void scree_cuda_free(scree_device *device, void *memory);
     void scree_cuda_write(scree_device *device, void *to, const void *from, size_t num_bytes);
@@ -32,6 +36,11 @@ extern "C"
     int64_t scree_cuda_sort_scratch(scree_device *device, int64_t num_items, bool has_values);
     /// scree_sort() on the device of the buffers.
     void scree_cuda_sort(scree_sort_buffers *buffers, int64_t num_items, int first_bit);
+
+    /// Scratch memory [bytes] that the scan of num_values takes.
+    int64_t scree_cuda_scan_scratch(scree_device *device, int64_t num_values);
+    /// Exclusive sums of values (num_values) in place, with scratch memory of num_bytes.
+    void scree_cuda_scan(scree_device *device, int64_t *values, int64_t num_values, void *scratch, int64_t num_bytes);
 
 #ifdef __cplusplus
 }

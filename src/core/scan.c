@@ -1,5 +1,8 @@
 #include "core/scan.h"
 
+#include "core/buffer.h"
+#include "core/device_cuda.h"
+
 #ifdef _OPENMP
 #include <omp.h>
 #endif
@@ -68,4 +71,34 @@ int64_t scree_scan_exclusive(int64_t *values, int64_t num_values)
     }
     values[num_values] = total;
     return total;
+}
+
+scree_status scree_scan_reserve(scree_scan_scratch *scratch, int64_t num_values)
+{
+    if (scratch->device == NULL || (num_values <= scratch->max_values && scratch->memory != NULL)) return SCREE_OK;
+    scree_scan_destroy(scratch);
+    const int64_t max_values = scree_buffer_grown(num_values);
+    SCREE_CUDA_CALL(scratch->num_bytes = scree_cuda_scan_scratch(scratch->device, max_values + 1));
+    scratch->memory = scree_device_alloc(scratch->device, scratch->num_bytes, 1);
+    if (scratch->memory == NULL) return SCREE_OUT_OF_MEMORY;
+    scratch->max_values = max_values;
+    return SCREE_OK;
+}
+
+void scree_scan_on(scree_scan_scratch *scratch, int64_t *values, int64_t num_values)
+{
+    if (scratch->device == NULL)
+    {
+        scree_scan_exclusive(values, num_values);
+        return;
+    }
+    // the last one has nothing but what is before it
+    scree_device_zero(scratch->device, values + num_values, sizeof *values);
+    SCREE_CUDA_CALL(scree_cuda_scan(scratch->device, values, num_values + 1, scratch->memory, scratch->num_bytes));
+}
+
+void scree_scan_destroy(scree_scan_scratch *scratch)
+{
+    scree_device_free(scratch->device, scratch->memory);
+    *scratch = (scree_scan_scratch){.device = scratch->device};
 }

@@ -99,10 +99,8 @@ void scree_averages_destroy(scree_averages *averages)
     scree_spectrum_destroy(&averages->spectrum_total);
     free(averages->works.start);
     free(averages->works.total);
-    free(averages->collisions.normal);
-    free(averages->collisions.tangential);
-    free(averages->old_collisions.normal);
-    free(averages->old_collisions.tangential);
+    scree_collisions_destroy(&averages->collisions);
+    scree_destroy_collision_scratch(averages, NULL);
     free(averages->cube_size);
     free(averages->bin_edges);
     *averages = (scree_averages){0};
@@ -192,11 +190,11 @@ scree_status scree_averages_restart(scree_simulation *simulation)
                                   : SCREE_OK;
 }
 
-scree_status scree_update_averages(scree_simulation *simulation)
+scree_status scree_update_averages(scree_simulation *simulation, scree_report *report)
 {
     scree_averages *averages = &simulation->averages;
     if (!averages->is_on) return SCREE_OK;
-    const scree_status status = scree_update_collisions(simulation);
+    scree_status status = scree_update_collisions(simulation);
     if (status != SCREE_OK) return status;
     const int64_t due = num_due(averages, simulation->time_step, simulation->step);
     if ((double)simulation->step * simulation->time_step <= averages->from)
@@ -206,6 +204,8 @@ scree_status scree_update_averages(scree_simulation *simulation)
         note_works(simulation);
     }
     if (due == 0 || due == num_due(averages, simulation->time_step, simulation->step - 1)) return SCREE_OK;
+    status = scree_simulation_observe(simulation, report);
+    if (status != SCREE_OK) return status;
     scree_grid_add_sample(simulation, &averages->grid);
     ++averages->num_samples;
     if (due % averages->samples != 0) return SCREE_OK;

@@ -5,6 +5,8 @@
 #ifndef SCREE_AVERAGES_H
 #define SCREE_AVERAGES_H
 
+#include "core/scan.h"
+#include "forces/collision_kernel.h"
 #include "scree/simulation.h"
 
 /// Sums over samples for each cell, x fastest, then y, then z. Owns its arrays.
@@ -34,8 +36,9 @@ typedef struct scree_collisions
 {
     int64_t num_contacts;
     int64_t max_contacts;
-    double *normal;     ///< [J] work against the normal forces (num_contacts)
-    double *tangential; ///< [J] against tangential forces and moments (num_contacts)
+    double *normal;       ///< [J] work against the normal forces (num_contacts)
+    double *tangential;   ///< [J] against tangential forces and moments (num_contacts)
+    scree_device *device; ///< where the arrays lie, NULL: the CPU
 } scree_collisions;
 
 /// Work of the walls. Owns its arrays.
@@ -66,7 +69,13 @@ typedef struct scree_averages
     scree_period_works works;
     scree_collisions collisions;
 
-    scree_collisions old_collisions; ///< scratch
+    // scratch
+    scree_collisions old_collisions;
+    scree_scan_scratch scan;
+    int64_t *ended_places; ///< (max_places)
+    int64_t max_places;
+    scree_ended_collision *ended; ///< (max_ended)
+    int64_t max_ended;
 } scree_averages;
 
 /// Makes simulation->averages from the scene; particles and walls must be there, the time step known. Faults: a wall
@@ -76,7 +85,7 @@ void scree_averages_destroy(scree_averages *averages);
 /// Starts anew for the contacts that there are, as at time 0; their collisions count from now on.
 scree_status scree_averages_restart(scree_simulation *simulation);
 /// After a step: collisions and, if one is due, a sample.
-scree_status scree_update_averages(scree_simulation *simulation);
+scree_status scree_update_averages(scree_simulation *simulation, scree_report *report);
 
 /// Room for a spectrum or grid of this size, zeroed. SCREE_OUT_OF_MEMORY leaves it empty.
 scree_status scree_grid_sums_create(scree_grid_sums *sums, int64_t num_cells);
@@ -85,9 +94,14 @@ scree_status scree_spectrum_create(scree_spectrum *spectrum, int64_t num_rows);
 void scree_spectrum_destroy(scree_spectrum *spectrum);
 /// Room for num_contacts, zeroed.
 scree_status scree_collisions_reserve(scree_collisions *collisions, int64_t num_contacts);
+/// The same numbers, where *to lies; one of the two is on the CPU.
+scree_status scree_collisions_copy(scree_collisions *to, const scree_collisions *from);
+void scree_collisions_destroy(scree_collisions *collisions);
 
 /// Adds the particles as they are now to the sums.
 void scree_grid_add_sample(const scree_simulation *simulation, scree_grid_sums *sums);
+/// Frees what scree_update_collisions() works with.
+void scree_destroy_collision_scratch(scree_averages *averages, scree_device *device);
 /// Works of the present contacts over the step just done; those that have ended go to the spectrum.
 scree_status scree_update_collisions(scree_simulation *simulation);
 

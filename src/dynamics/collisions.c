@@ -1,10 +1,12 @@
 /// \file collisions.c
 /// Energies of collisions: an account for each present contact, a histogram of those that have ended.
 #include "dynamics/averages.h"
+
+#include "core/buffer.h"
+#include "dynamics/on_device.h"
 #include "dynamics/step_buffers.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 scree_status scree_spectrum_create(scree_spectrum *spectrum, int64_t num_rows)
 {
@@ -31,24 +33,59 @@ void scree_spectrum_destroy(scree_spectrum *spectrum)
 
 scree_status scree_collisions_reserve(scree_collisions *collisions, int64_t num_contacts)
 {
+    scree_device *device = collisions->device;
     if (num_contacts > collisions->max_contacts || collisions->normal == NULL)
     {
-        const int64_t max = num_contacts + num_contacts / 2 + 16;
-        double *normal = malloc((size_t)max * sizeof *normal), *tangential = malloc((size_t)max * sizeof *tangential);
+        const int64_t max = scree_buffer_grown(num_contacts);
+        double *normal = scree_device_alloc(device, max, sizeof *normal);
+        double *tangential = scree_device_alloc(device, max, sizeof *tangential);
         if (normal == NULL || tangential == NULL)
         {
-            free(normal);
-            free(tangential);
+            scree_device_free(device, normal);
+            scree_device_free(device, tangential);
             return SCREE_OUT_OF_MEMORY;
         }
-        free(collisions->normal);
-        free(collisions->tangential);
-        *collisions = (scree_collisions){0, max, normal, tangential};
+        scree_device_free(device, collisions->normal);
+        scree_device_free(device, collisions->tangential);
+        collisions->max_contacts = max;
+        collisions->normal = normal;
+        collisions->tangential = tangential;
     }
     collisions->num_contacts = num_contacts;
-    memset(collisions->normal, 0, (size_t)num_contacts * sizeof *collisions->normal);
-    memset(collisions->tangential, 0, (size_t)num_contacts * sizeof *collisions->tangential);
+    scree_device_zero(device, collisions->normal, (size_t)num_contacts * sizeof *collisions->normal);
+    scree_device_zero(device, collisions->tangential, (size_t)num_contacts * sizeof *collisions->tangential);
     return SCREE_OK;
+}
+
+scree_status scree_collisions_copy(scree_collisions *to, const scree_collisions *from)
+{
+    const scree_status status = scree_collisions_reserve(to, from->num_contacts);
+    if (status != SCREE_OK) return status;
+    const size_t num_bytes = (size_t)from->num_contacts * sizeof(double);
+    if (to->device != NULL)
+    {
+        scree_device_write(to->device, to->normal, from->normal, num_bytes);
+        scree_device_write(to->device, to->tangential, from->tangential, num_bytes);
+        return SCREE_OK;
+    }
+    scree_device_read(from->device, to->normal, from->normal, num_bytes);
+    scree_device_read(from->device, to->tangential, from->tangential, num_bytes);
+    return SCREE_OK;
+}
+
+void scree_collisions_destroy(scree_collisions *collisions)
+{
+    scree_device_free(collisions->device, collisions->normal);
+    scree_device_free(collisions->device, collisions->tangential);
+    *collisions = (scree_collisions){.device = collisions->device};
+}
+
+void scree_destroy_collision_scratch(scree_averages *averages, scree_device *device)
+{
+    scree_collisions_destroy(&averages->old_collisions);
+    scree_scan_destroy(&averages->scan);
+    scree_device_free(device, averages->ended_places);
+    scree_device_free(device, averages->ended);
 }
 
 /// Row of an energy: 0 below the first edge, num_bins + 1 from the last one on.
@@ -64,47 +101,80 @@ static int64_t bin_of(const scree_averages *averages, double energy)
     return low;
 }
 
-/// Collisions that this step found ended, in the order of the contacts.
-static void count_ended(scree_simulation *s)
+/// One collision to the histogram.
+static void count(const scree_averages *averages, scree_spectrum *spectrum, const scree_ended_collision *collision)
 {
-    scree_averages *averages = &s->averages;
-    const scree_collisions *old = &averages->old_collisions;
-    scree_spectrum *spectrum = &averages->spectrum;
-    for (int64_t o = 0; o < old->num_contacts; ++o)
+    const int64_t first = collision->is_with_wall ? averages->num_bins + 2 : 0;
+    const int64_t normal = first + bin_of(averages, collision->normal);
+    const int64_t tangential = first + bin_of(averages, collision->tangential);
+    ++spectrum->count_normal[normal];
+    ++spectrum->count_tangential[tangential];
+    spectrum->energy_normal[normal] += collision->normal;
+    spectrum->energy_tangential[tangential] += collision->tangential;
+}
+
+/// The collisions that this step found ended are put together, in the order of the contacts, and come to the host.
+static scree_status count_ended(scree_simulation *simulation, scree_simulation *there)
+{
+    scree_averages *scratch = &there->averages;
+    const scree_collisions *old = &scratch->old_collisions;
+    const int64_t num_old = old->num_contacts;
+    scree_device *device = there->device;
+    scratch->scan.device = device;
+    scree_status status = scree_device_reserve(device, &scratch->ended_places, &scratch->max_places, num_old + 1,
+                                               sizeof *scratch->ended_places);
+    if (status == SCREE_OK) status = scree_scan_reserve(&scratch->scan, num_old);
+    if (status != SCREE_OK) return status;
+
+    scree_ended_collisions_args args;
+    args.bodies = there->old_contacts.bodies;
+    args.is_continued = there->buffers->is_continued;
+    args.normal = old->normal;
+    args.tangential = old->tangential;
+    args.num_particles = (int32_t)there->particles.num_particles;
+    args.places = scratch->ended_places;
+    args.ended = NULL;
+    scree_ended_flag_launch_on(device, args, num_old);
+    scree_scan_on(&scratch->scan, args.places, num_old);
+    int64_t num = 0;
+    scree_device_read(device, &num, args.places + num_old, sizeof num);
+    if (num == 0) return SCREE_OK;
+    status = scree_device_reserve(device, &scratch->ended, &scratch->max_ended, num, sizeof *scratch->ended);
+    scree_ended_collision *ended = calloc((size_t)num, sizeof *ended);
+    if (status != SCREE_OK || ended == NULL)
     {
-        if (s->buffers->is_continued[o]) continue;
-        const bool is_wall = s->old_contacts.bodies[o].j >= s->particles.num_particles;
-        const int64_t first = is_wall ? averages->num_bins + 2 : 0;
-        const int64_t normal = first + bin_of(averages, old->normal[o]);
-        const int64_t tangential = first + bin_of(averages, old->tangential[o]);
-        ++spectrum->count_normal[normal];
-        ++spectrum->count_tangential[tangential];
-        spectrum->energy_normal[normal] += old->normal[o];
-        spectrum->energy_tangential[tangential] += old->tangential[o];
+        free(ended);
+        return SCREE_OUT_OF_MEMORY;
     }
+    args.ended = scratch->ended;
+    scree_ended_collisions_launch_on(device, args, num_old);
+    scree_device_read(device, ended, scratch->ended, (size_t)num * sizeof *ended);
+    for (int64_t k = 0; k < num; ++k) count(&simulation->averages, &simulation->averages.spectrum, ended + k);
+    free(ended);
+    return SCREE_OK;
 }
 
 scree_status scree_update_collisions(scree_simulation *simulation)
 {
-    scree_averages *averages = &simulation->averages;
-    if (averages->num_bins == 0) return SCREE_OK;
+    if (simulation->averages.num_bins == 0) return SCREE_OK;
+    scree_simulation *there = scree_simulation_there(simulation);
+    scree_averages *averages = &there->averages;
     const scree_collisions last = averages->collisions;
     averages->collisions = averages->old_collisions;
     averages->old_collisions = last;
-    const int64_t num_contacts = simulation->contacts.num_contacts;
+    const int64_t num_contacts = there->contacts.num_contacts;
     const scree_status status = scree_collisions_reserve(&averages->collisions, num_contacts);
     if (status != SCREE_OK) return status;
 
     scree_collision_args args;
-    args.contacts = simulation->contacts;
-    args.bodies = scree_step_body_motion(simulation->buffers);
-    args.old_of_contact = simulation->buffers->old_of_contact;
+    args.contacts = scree_contact_list_view(&there->contacts);
+    args.bodies = scree_step_body_motion(there->buffers);
+    args.old_of_contact = there->buffers->old_of_contact;
     args.old_normal = last.normal;
     args.old_tangential = last.tangential;
-    args.time_step = simulation->time_step;
+    args.time_step = there->time_step;
     args.normal = averages->collisions.normal;
     args.tangential = averages->collisions.tangential;
-    scree_collision_launch(args, num_contacts);
-    count_ended(simulation);
-    return SCREE_OK;
+    scree_collision_launch_on(there->device, args, num_contacts);
+    return count_ended(simulation, there);
 }

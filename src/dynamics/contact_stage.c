@@ -4,34 +4,37 @@
 #include "dynamics/step_buffers.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
-/// Room for `num` items of `size` bytes behind *array, growing by half at least; contents are not kept.
-static scree_status reserve(void *array, int64_t *max, int64_t num, size_t size)
+static int64_t count_blocks(int64_t num, int64_t size) { return (num + size - 1) / size; }
+
+/// Room for the contacts that there are, and for the sums over them.
+static scree_status reserve_contacts(scree_simulation *s)
 {
-    void **items = array;
-    if (num <= *max && *items != NULL) return SCREE_OK;
-    const int64_t grown = num + num / 2 + 16;
-    free(*items);
-    *items = malloc((size_t)grown * size);
-    *max = *items != NULL ? grown : 0;
-    return *items != NULL ? SCREE_OK : SCREE_OUT_OF_MEMORY;
+    scree_step_buffers *b = s->buffers;
+    const int64_t num = s->contacts.num_contacts, num_old = s->old_contacts.num_contacts;
+    b->num_ended_blocks = count_blocks(num_old, SCREE_WORK_BLOCK);
+    const int64_t num_blocks = b->num_ended_blocks + count_blocks(num, SCREE_WORK_BLOCK);
+    // sums of sums, down to one, take less than a 255th of them
+    const int64_t num_sums = num_blocks + num_blocks / (SCREE_SUM_FAN_IN - 1) + 8;
+    scree_status status =
+        scree_device_reserve(s->device, &b->old_of_contact, &b->max_contacts, num, sizeof *b->old_of_contact);
+    if (status == SCREE_OK)
+        status = scree_device_reserve(s->device, &b->is_continued, &b->max_old, num_old, sizeof *b->is_continued);
+    if (status == SCREE_OK)
+        status = scree_device_reserve(s->device, &b->work_sums, &b->max_work_sums, num_sums, sizeof *b->work_sums);
+    return status;
 }
 
-/// Energy that ended contacts had stored: lost by the normal springs (hysteresis) and the tangential ones (friction).
-static void account_ended(scree_simulation *s)
+/// What ended contacts had stored, and the largest indentation.
+static void sum_up_contacts(const scree_simulation *s)
 {
-    const scree_contact_list *old = &s->old_contacts;
-    double normal = 0, tangential = 0;
-    for (int64_t o = 0; o < old->num_contacts; ++o)
-    {
-        if (s->buffers->is_continued[o]) continue;
-        normal += (double)old->elastic_energy[o];
-        tangential += (double)old->spring_energy[o];
-    }
-    s->energies.hysteresis += normal;
-    s->energies.friction += tangential;
+    const scree_step_buffers *b = s->buffers;
+    const int64_t num = s->contacts.num_contacts;
+    const scree_ended_args ended = {s->old_contacts.elastic_energy, s->old_contacts.spring_energy, b->is_continued,
+                                    s->old_contacts.num_contacts, b->work_sums};
+    scree_ended_launch_on(s->device, ended, b->num_ended_blocks);
+    const scree_indentations_args indentations = {s->contacts.indentation, num, &b->tally->largest_indentation};
+    scree_indentations_launch_on(s->device, indentations, count_blocks(num, SCREE_WORK_BLOCK));
 }
 
 scree_status scree_update_contacts(scree_simulation *simulation)
@@ -53,9 +56,7 @@ scree_status scree_update_contacts(scree_simulation *simulation)
     scree_status status = scree_narrow_phase_find(&simulation->narrow_phase, &bodies, broad_phase->pairs,
                                                   broad_phase->num_pairs, &simulation->contacts);
     scree_stage_end(&simulation->clock, SCREE_STAGE_CONTACTS);
-    const int64_t num = simulation->contacts.num_contacts;
-    if (status == SCREE_OK) status = reserve(&b->old_of_contact, &b->max_contacts, num, sizeof *b->old_of_contact);
-    if (status == SCREE_OK) status = reserve(&b->is_continued, &b->max_old, old.num_contacts, sizeof *b->is_continued);
+    if (status == SCREE_OK) status = reserve_contacts(simulation);
     if (status != SCREE_OK) return status;
 
     scree_history_match_args match;
@@ -70,19 +71,18 @@ scree_status scree_update_contacts(scree_simulation *simulation)
     match.num_old = old.num_contacts;
     match.old_of_contact = b->old_of_contact;
     match.is_continued = b->is_continued;
-    memset(b->is_continued, 0, (size_t)old.num_contacts);
-    scree_history_match_launch(match, broad_phase->num_pairs);
+    scree_device_zero(simulation->device, b->is_continued, (size_t)old.num_contacts);
+    scree_history_match_launch_on(simulation->device, match, broad_phase->num_pairs);
     b->is_old_list_of_same_pairs = true;
-    account_ended(simulation);
+    sum_up_contacts(simulation);
 
     const scree_narrow_phase_counts *counts = &simulation->narrow_phase.counts;
     scree_counters *counters = &simulation->counters;
-    counters->num_contacts = num;
+    counters->num_contacts = simulation->contacts.num_contacts;
     counters->num_without_normal += counts->num_without_normal;
     counters->num_inside += counts->num_inside;
     counters->num_fallbacks += counts->num_fallbacks;
     counters->worst_residual = fmax(counters->worst_residual, (double)counts->worst_residual);
-    counters->largest_indentation = fmax(counters->largest_indentation, (double)counts->largest_indentation);
     scree_stage_end(&simulation->clock, SCREE_STAGE_HISTORY);
     return SCREE_OK;
 }
@@ -103,19 +103,19 @@ scree_status scree_update_forces(scree_simulation *simulation)
 {
     const scree_step_buffers *b = simulation->buffers;
     scree_contact_force_args force;
-    force.contacts = simulation->contacts;
-    force.old_contacts = simulation->old_contacts;
+    force.contacts = scree_contact_list_view(&simulation->contacts);
+    force.old_contacts = scree_contact_list_view(&simulation->old_contacts);
     force.old_of_contact = b->old_of_contact;
     force.bodies = scree_step_body_motion(b);
     force.laws = simulation->laws;
     force.num_materials = simulation->num_materials;
     force.time_step = (scree_real)simulation->time_step;
-    scree_contact_force_launch(force, simulation->contacts.num_contacts);
+    scree_contact_force_launch_on(simulation->device, force, simulation->contacts.num_contacts);
     scree_stage_end(&simulation->clock, SCREE_STAGE_FORCES);
 
     const double *gravity = simulation->scene->gravity;
     scree_gather_args gather;
-    gather.contacts = simulation->contacts;
+    gather.contacts = scree_contact_list_view(&simulation->contacts);
     gather.row_begin = simulation->broad_phase.row_begin;
     gather.row_pairs = simulation->broad_phase.row_pairs;
     gather.pose = b->pose;
@@ -123,40 +123,60 @@ scree_status scree_update_forces(scree_simulation *simulation)
     gather.gravity = scree_vec3_make((scree_real)gravity[0], (scree_real)gravity[1], (scree_real)gravity[2]);
     gather.force = simulation->particles.force;
     gather.torque = simulation->particles.torque;
-    scree_gather_launch(gather, simulation->particles.num_particles);
+    scree_gather_launch_on(simulation->device, gather, simulation->particles.num_particles);
     scree_stage_end(&simulation->clock, SCREE_STAGE_GATHER);
     return SCREE_OK;
 }
 
+/// Adds the sums up, in groups of always the same ones, until one is left, and takes that to the tally.
+static void reduce_work(const scree_simulation *s, int64_t num_parts)
+{
+    scree_work_reduce_args args = {s->buffers->work_sums, num_parts, s->buffers->work_sums + num_parts};
+    do {
+        const int64_t num_sums = count_blocks(args.num_parts, SCREE_SUM_FAN_IN);
+        scree_work_reduce_launch_on(s->device, args, num_sums);
+        args = (scree_work_reduce_args){args.sums, num_sums, args.sums + num_sums};
+    } while (args.num_parts > 1);
+    if (num_parts > 0) scree_device_copy(s->device, &s->buffers->tally->work, args.parts, sizeof *args.parts);
+}
+
 scree_status scree_account_work(scree_simulation *simulation)
 {
-    scree_step_buffers *b = simulation->buffers;
-    const int64_t num_blocks = (simulation->contacts.num_contacts + SCREE_WORK_BLOCK - 1) / SCREE_WORK_BLOCK;
-    const scree_status status = reserve(&b->work_sums, &b->max_work_blocks, num_blocks, sizeof *b->work_sums);
-    if (status != SCREE_OK) return status;
-
+    const scree_step_buffers *b = simulation->buffers;
+    const int64_t num_blocks = count_blocks(simulation->contacts.num_contacts, SCREE_WORK_BLOCK);
     scree_work_args work;
-    work.contacts = simulation->contacts;
+    work.contacts = scree_contact_list_view(&simulation->contacts);
     work.bodies = scree_step_body_motion(b);
     work.inertia = simulation->particles.inertia;
     work.laws = simulation->laws;
     work.num_materials = simulation->num_materials;
     work.num_particles = (int32_t)simulation->particles.num_particles;
     work.time_step = (scree_real)simulation->time_step;
-    work.sums = b->work_sums;
-    scree_work_launch(work, num_blocks);
-
-    double smallest_squared = simulation->counters.smallest_critical_step;
-    smallest_squared *= smallest_squared;
-    for (int64_t k = 0; k < num_blocks; ++k)
-    {
-        simulation->energies.damping += (double)b->work_sums[k].damping;
-        simulation->energies.friction += (double)b->work_sums[k].friction;
-        simulation->energies.hysteresis += (double)b->work_sums[k].hysteresis;
-        simulation->energies.input += (double)b->work_sums[k].input;
-        if (!((double)b->work_sums[k].smallest_step_squared >= smallest_squared))
-            smallest_squared = (double)b->work_sums[k].smallest_step_squared;
-    }
-    simulation->counters.smallest_critical_step = sqrt(smallest_squared);
+    work.sums = b->work_sums + b->num_ended_blocks;
+    scree_work_launch_on(simulation->device, work, num_blocks);
+    reduce_work(simulation, b->num_ended_blocks + num_blocks);
+    scree_take_tally(simulation);
     return SCREE_OK;
+}
+
+void scree_take_tally(scree_simulation *simulation)
+{
+    scree_step_buffers *b = simulation->buffers;
+    scree_step_tally tally = {0};
+    scree_device_read(simulation->device, &tally, b->tally, sizeof tally);
+    scree_device_zero(simulation->device, b->tally, sizeof tally);
+
+    scree_energies *energies = &simulation->energies;
+    energies->damping += (double)tally.work.damping;
+    energies->friction += (double)tally.work.friction;
+    energies->hysteresis += (double)tally.work.hysteresis;
+    energies->input += (double)tally.work.input;
+    scree_counters *counters = &simulation->counters;
+    // without contacts nothing was written there, or the largest number
+    if (tally.work.smallest_step_squared > 0 && tally.work.smallest_step_squared < SCREE_REAL_MAX)
+        counters->smallest_critical_step =
+            fmin(counters->smallest_critical_step, sqrt((double)tally.work.smallest_step_squared));
+    counters->largest_indentation = fmax(counters->largest_indentation, scree_maximum_value(tally.largest_indentation));
+    const int64_t num_from_unstable = (int64_t)scree_maximum_value(tally.num_from_unstable);
+    b->first_unstable = num_from_unstable > 0 ? simulation->particles.num_particles - num_from_unstable : -1;
 }

@@ -2,6 +2,7 @@
 /// A scene to a simulation at time 0. The scene's own faults (ranges, names) have been refused by its reader; what only
 /// shows with meshes and particles in place is refused here.
 #include "contact/clump_fill.h"
+#include "dynamics/on_device.h"
 #include "dynamics/populate.h"
 #include "dynamics/skin.h"
 #include "dynamics/start_check.h"
@@ -281,9 +282,9 @@ static scree_status start(scree_simulation *s, scree_report *report)
         strcmp(s->scene->solver.overlap_scheme, "hierarchy") == 0 ? SCREE_OVERLAP_HIERARCHY : SCREE_OVERLAP_FILTERED;
     s->narrow_phase.options.separate_patches = s->scene->solver.separate_patches;
     s->narrow_phase.options.use_convex_path = true;
-    s->narrow_phase.finds_separation = s->scene->solver.find_separation;
-    s->narrow_phase.remembers_separation = s->scene->solver.remember_separation;
-    s->narrow_phase.bounds_separation = s->scene->solver.bound_separation;
+    s->narrow_phase.separation.finds = s->scene->solver.find_separation;
+    s->narrow_phase.separation.remembers = s->scene->solver.remember_separation;
+    s->narrow_phase.separation.bounds = s->scene->solver.bound_separation;
     scree_place_walls(s, 0);
     scree_place_particles(s);
     scree_status status = scree_check_walls(s, report);
@@ -292,6 +293,7 @@ static scree_status start(scree_simulation *s, scree_report *report)
     if (status == SCREE_OK) status = scree_check_start(s, report);
     if (status == SCREE_OK) status = scree_update_forces(s);
     if (status == SCREE_OK) status = scree_update_wall_loads(s);
+    scree_take_tally(s);
     return status;
 }
 
@@ -330,6 +332,7 @@ scree_status scree_simulation_create(scree_simulation **simulation, const scree_
     if (status == SCREE_OK) status = choose_time_step(s, report);
     if (status == SCREE_OK) status = scree_step_buffers_create(s);
     if (status == SCREE_OK) status = scree_wall_axes_create(s);
+    if (status == SCREE_OK) status = scree_wall_loads_create(&s->wall_loads, s->num_walls);
     if (status == SCREE_OK) status = scree_averages_create(s, report);
     if (status == SCREE_OK) status = start(s, report);
     if (status == SCREE_OK) status = scree_averages_restart(s);
@@ -356,6 +359,7 @@ scree_status scree_simulation_restored(scree_simulation *simulation, scree_repor
 void scree_simulation_destroy(scree_simulation *simulation)
 {
     if (simulation == NULL) return;
+    scree_leave_device(simulation);
     for (int32_t k = 0; k < simulation->num_shapes; ++k)
     {
         if (simulation->particle_shapes != NULL) scree_shape_destroy(simulation->particle_shapes + k);

@@ -1,7 +1,11 @@
 #include "core/launch_cuda.cuh"
+#include "dynamics/body_kernel.h"
 #include "dynamics/integrator_kernel.h"
 #include "dynamics/neighbour_kernel.h"
 
 SCREE_DEFINE_LAUNCH(scree_predict)
 SCREE_DEFINE_LAUNCH(scree_correct)
 SCREE_DEFINE_LAUNCH(scree_boxes)
+SCREE_DEFINE_LAUNCH(scree_travel)
+SCREE_DEFINE_LAUNCH(scree_place_walls)
+SCREE_DEFINE_LAUNCH(scree_place_particles)

@@ -9,6 +9,7 @@
 #define SCREE_INTEGRATOR_KERNEL_H
 
 #include "dynamics/particles.h"
+#include "dynamics/step_tally.h"
 
 /// More than enough: each round gains the factor |w| dt.
 #define SCREE_ROTATION_MAX_ROUNDS 32
@@ -95,19 +96,23 @@ typedef struct scree_correct_args
     scree_real time_step;
     scree_vec3 *velocity;         ///< (num_particles) out: of the end of the step
     scree_vec3 *angular_velocity; ///< (num_particles) out
+    scree_step_tally *tally;      ///< learns of a particle whose position or momentum is not finite
 } scree_correct_args;
 
 /// Second half kick of particle i.
 SCREE_FN void scree_correct_at(scree_correct_args a, int64_t i)
 {
     const scree_real half = a.time_step * (scree_real)0.5;
-    a.particles.velocity[i] =
+    const scree_vec3 velocity =
         scree_vec3_add_scaled(a.particles.velocity[i], a.particles.force[i], half / a.particles.mass[i]);
-    a.particles.angular_momentum[i] =
-        scree_vec3_add_scaled(a.particles.angular_momentum[i], a.particles.torque[i], half);
-    a.velocity[i] = a.particles.velocity[i];
-    a.angular_velocity[i] =
-        scree_angular_velocity(a.particles.angular_momentum[i], a.particles.inertia[i], a.particles.orientation[i]);
+    const scree_vec3 momentum = scree_vec3_add_scaled(a.particles.angular_momentum[i], a.particles.torque[i], half);
+    const scree_vec3 x = a.particles.position[i];
+    a.particles.velocity[i] = velocity;
+    a.particles.angular_momentum[i] = momentum;
+    a.velocity[i] = velocity;
+    const scree_real sum = x.x + x.y + x.z + momentum.x + momentum.y + momentum.z;
+    if (!(sum - sum == 0)) scree_atomic_max(&a.tally->num_from_unstable, (scree_real)(a.particles.num_particles - i));
+    a.angular_velocity[i] = scree_angular_velocity(momentum, a.particles.inertia[i], a.particles.orientation[i]);
 }
 
 #endif

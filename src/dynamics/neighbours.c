@@ -5,55 +5,54 @@
 #include "dynamics/skin.h"
 #include "dynamics/step_buffers.h"
 
-#include <string.h>
-
-/// Largest displacement of bodies begin .. end - 1 since the last search. A maximum does not depend on the order.
-static scree_real largest_displacement(const scree_simulation *s, int64_t begin, int64_t end)
+static scree_travel_args travel_args(const scree_simulation *s)
 {
     const scree_step_buffers *b = s->buffers;
-    scree_real largest = 0;
-#pragma omp parallel for schedule(static) reduction(max : largest) if (end - begin >= 1024)
-    for (int64_t i = begin; i < end; ++i)
-    {
-        const scree_real moved = scree_displacement(s->shape_views + b->shape[i], b->searched_pose + i, b->pose + i);
-        if (!(moved <= largest)) largest = moved;
-    }
-    return largest;
+    scree_travel_args args;
+    args.shapes = s->shape_views;
+    args.shape = b->shape;
+    args.pose = b->pose;
+    args.searched_pose = b->searched_pose;
+    args.last_pose = b->last_pose;
+    args.travel = b->has_travel ? b->travel : NULL;
+    args.num_particles = s->particles.num_particles;
+    args.particles_moved = &b->tally->particles_moved;
+    args.walls_moved = &b->tally->walls_moved;
+    return args;
 }
 
-static bool is_search_due(const scree_simulation *s)
+/// Adds the way of this step to the travels of all bodies, and finds how far two of them can have come closer to each
+/// other since the last search.
+static void follow_bodies(scree_simulation *s)
 {
-    scree_step_buffers *b = s->buffers;
+    const scree_step_tally *tally = s->buffers->tally;
+    scree_travel_launch_on(s->device, travel_args(s), s->particles.num_particles + s->num_walls);
+    scree_maximum moved[2] = {{0}, {0}};
+    scree_device_read(s->device, moved, &tally->particles_moved, sizeof moved);
+    s->buffers->moved = (scree_real)(scree_maximum_value(moved[0]) + scree_maximum_value(moved[1]));
+}
+
+static bool is_search_due(scree_simulation *s)
+{
+    const scree_step_buffers *b = s->buffers;
     if (!b->has_pairs || !s->scene->solver.reuse_pairs) return true;
     for (int32_t w = 0; w < s->num_walls; ++w)
-        if (s->walls[w].is_present != b->broad_phase_walls[w].is_present) return true;
-    const int64_t num = s->particles.num_particles;
-    b->moved = largest_displacement(s, 0, num) + largest_displacement(s, num, num + s->num_walls);
+        if (s->walls[w].is_present != b->wall_input[w].is_present) return true;
+    follow_bodies(s);
+    // not a number asks for a search
     return !(b->moved <= b->skin);
-}
-
-/// Adds the way of this step to the travels of all bodies.
-static void add_travel(scree_simulation *s)
-{
-    scree_step_buffers *b = s->buffers;
-    const int64_t num_bodies = s->particles.num_particles + s->num_walls;
-#pragma omp parallel for schedule(static) if (num_bodies >= 1024)
-    for (int64_t i = 0; i < num_bodies; ++i)
-    {
-        b->travel[i] += scree_displacement(s->shape_views + b->shape[i], b->last_pose + i, b->pose + i);
-        b->last_pose[i] = b->pose[i];
-    }
 }
 
 scree_status scree_update_neighbours(scree_simulation *simulation)
 {
     scree_step_buffers *b = simulation->buffers;
-    if (b->has_travel) add_travel(simulation);
+    scree_device *device = simulation->device;
     const bool is_due = is_search_due(simulation);
     scree_stage_end(&simulation->clock, SCREE_STAGE_TRAVEL);
     if (!is_due) return SCREE_OK;
     scree_skin_adapt(simulation);
     const int64_t num_particles = simulation->particles.num_particles;
+    const int64_t num_bodies = num_particles + simulation->num_walls;
 
     scree_boxes_args boxes;
     boxes.shapes = simulation->shape_views;
@@ -63,14 +62,15 @@ scree_status scree_update_neighbours(scree_simulation *simulation)
     boxes.boxes = b->boxes;
     boxes.centres = b->centres;
     boxes.radii = b->radii;
-    scree_boxes_launch(boxes, num_particles);
+    scree_boxes_launch_on(device, boxes, num_particles);
 
     for (int32_t w = 0; w < simulation->num_walls; ++w)
     {
-        b->broad_phase_walls[w].tree = simulation->shape_views[b->shape[num_particles + w]].tree;
-        b->broad_phase_walls[w].pose = simulation->walls[w].pose;
-        b->broad_phase_walls[w].is_present = simulation->walls[w].is_present;
+        b->wall_input[w].pose = simulation->walls[w].pose;
+        b->wall_input[w].is_present = simulation->walls[w].is_present;
     }
+    scree_device_write(device, b->broad_phase_walls, b->wall_input,
+                       (size_t)simulation->num_walls * sizeof *b->wall_input);
 
     scree_broad_phase_input input;
     input.boxes = b->boxes;
@@ -84,8 +84,9 @@ scree_status scree_update_neighbours(scree_simulation *simulation)
     if (status != SCREE_OK) return status;
 
     scree_narrow_phase_forget(&simulation->narrow_phase);
-    memset(b->travel, 0, (size_t)(num_particles + simulation->num_walls) * sizeof *b->travel);
-    memcpy(b->searched_pose, b->pose, (size_t)(num_particles + simulation->num_walls) * sizeof *b->pose);
+    scree_device_zero(device, b->travel, (size_t)num_bodies * sizeof *b->travel);
+    scree_device_copy(device, b->searched_pose, b->pose, (size_t)num_bodies * sizeof *b->pose);
+    if (b->has_travel) scree_device_copy(device, b->last_pose, b->pose, (size_t)num_bodies * sizeof *b->pose);
     b->has_pairs = true;
     b->searched_step = simulation->step;
     b->is_old_list_of_same_pairs = false;

@@ -3,10 +3,11 @@
 #ifndef SCREE_PARTICLES_H
 #define SCREE_PARTICLES_H
 
+#include "core/device.h"
 #include "core/vec.h"
 #include "scree/base.h"
 
-/// Owns its arrays, all (num_particles), host memory.
+/// Owns its arrays, all (num_particles).
 typedef struct scree_particles
 {
     int64_t num_particles;
@@ -30,6 +31,11 @@ typedef struct scree_particles
 
 scree_status scree_particles_create(scree_particles *particles, int64_t num_particles);
 void scree_particles_destroy(scree_particles *particles);
+/// *to: the same particles on a GPU. SCREE_OUT_OF_MEMORY.
+scree_status scree_particles_copy(scree_device *device, scree_particles *to, const scree_particles *from);
+/// The moving arrays back from there.
+void scree_particles_read(scree_device *device, scree_particles *to, const scree_particles *from);
+void scree_particles_free(scree_device *device, scree_particles *particles);
 
 /// Spheres and cubes turn like this: about the angular momentum, whatever their orientation.
 SCREE_FN bool scree_is_isotropic(scree_vec3 inertia) { return inertia.x == inertia.y && inertia.x == inertia.z; }

@@ -3,6 +3,7 @@
 #include "dynamics/plan.h"
 
 #include "contact/sphere_contact_kernel.h"
+#include "dynamics/on_device.h"
 #include "dynamics/step_buffers.h"
 
 #include <stdio.h>
@@ -145,4 +146,18 @@ void scree_simulation_print_plan(const scree_simulation *simulation, void *strea
     const double pairs = (double)s->broad_phase.num_pairs * (double)(bytes_pair + largest_pair + bytes_contact);
     fprintf(out, "  memory now about %.3g MB for %lld candidate pairs, all of them as contacts\n",
             (particles + pairs) / 1e6, (long long)s->broad_phase.num_pairs);
+}
+
+void scree_simulation_print_device_memory(const scree_simulation *simulation, scree_device *device, void *stream)
+{
+    const scree_device_memory memory = scree_device_memory_of(simulation);
+    const double num_free = (double)scree_device_free_memory(device);
+    FILE *out = stream;
+    fprintf(out,
+            "  on GPU \"%s\": %lld B/particle, %lld B/pair, %lld B/contact; for %lld pairs and %lld contacts, as "
+            "now or\n",
+            scree_device_name(device), (long long)memory.per_particle, (long long)memory.per_pair,
+            (long long)memory.per_contact, (long long)memory.num_pairs, (long long)memory.num_contacts);
+    fprintf(out, "    in a dense bed, %.3g MB of %.3g MB free: %s\n", (double)memory.total / 1e6, num_free / 1e6,
+            (double)memory.total <= num_free ? "fits" : "does not fit");
 }

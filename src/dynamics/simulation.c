@@ -1,52 +1,36 @@
 /// \file simulation.c
 /// The step, from above.
 #include "dynamics/dynamics.h"
+#include "dynamics/on_device.h"
 #include "dynamics/step_buffers.h"
 
-#include <math.h>
-
-/// First half kick and drift of the particles; the walls follow their prescribed motion.
-static void predict(scree_simulation *s)
+void scree_predict_motion(scree_simulation *simulation)
 {
     scree_predict_args args;
-    args.particles = s->particles;
-    args.time_step = (scree_real)s->time_step;
-    args.pose = s->buffers->pose;
-    args.velocity = s->buffers->velocity;
-    args.angular_velocity = s->buffers->angular_velocity;
-    scree_predict_launch(args, s->particles.num_particles);
-    scree_place_walls(s, (double)s->step * s->time_step);
+    args.particles = simulation->particles;
+    args.time_step = (scree_real)simulation->time_step;
+    args.pose = simulation->buffers->pose;
+    args.velocity = simulation->buffers->velocity;
+    args.angular_velocity = simulation->buffers->angular_velocity;
+    scree_predict_launch_on(simulation->device, args, simulation->particles.num_particles);
 }
 
-/// Second half kick.
-static void correct(scree_simulation *s)
+void scree_correct_motion(scree_simulation *simulation)
 {
     scree_correct_args args;
-    args.particles = s->particles;
-    args.time_step = (scree_real)s->time_step;
-    args.velocity = s->buffers->velocity;
-    args.angular_velocity = s->buffers->angular_velocity;
-    scree_correct_launch(args, s->particles.num_particles);
-}
-
-/// The first particle whose position or momentum is not a finite number, or -1.
-static int64_t find_unstable(const scree_particles *particles)
-{
-    int64_t first = INT64_MAX;
-#pragma omp parallel for schedule(static) reduction(min : first) if (particles->num_particles >= 4096)
-    for (int64_t i = 0; i < particles->num_particles; ++i)
-    {
-        const scree_vec3 x = particles->position[i], l = particles->angular_momentum[i];
-        const double sum = (double)(x.x + x.y + x.z + l.x + l.y + l.z);
-        if (!isfinite(sum) && i < first) first = i;
-    }
-    return first == INT64_MAX ? -1 : first;
+    args.particles = simulation->particles;
+    args.time_step = (scree_real)simulation->time_step;
+    args.velocity = simulation->buffers->velocity;
+    args.angular_velocity = simulation->buffers->angular_velocity;
+    args.tally = simulation->buffers->tally;
+    scree_correct_launch_on(simulation->device, args, simulation->particles.num_particles);
 }
 
 /// In checked builds the contacts of every step are walked over; elsewhere nothing.
 static scree_status check_contacts(const scree_simulation *s, scree_report *report)
 {
 #ifdef SCREE_CHECKED
+    if (s->device != NULL) return SCREE_OK;
     return scree_contact_list_validate(&s->contacts, report) ? SCREE_OK : SCREE_UNSTABLE;
 #else
     (void)s;
@@ -55,39 +39,65 @@ static scree_status check_contacts(const scree_simulation *s, scree_report *repo
 #endif
 }
 
-scree_status scree_simulation_step(scree_simulation *simulation, scree_report *report)
+/// One step where the arrays are, but for averages.
+static scree_status advance(scree_simulation *s, scree_report *report)
 {
-    ++simulation->step;
-    scree_stage_begin(&simulation->clock);
-    predict(simulation);
-    scree_stage_end(&simulation->clock, SCREE_STAGE_PREDICT);
-    scree_status status = scree_update_neighbours(simulation);
-    if (status == SCREE_OK) status = scree_update_contacts(simulation);
-    if (status == SCREE_OK) status = check_contacts(simulation, report);
-    scree_stage_end(&simulation->clock, SCREE_STAGE_OTHER);
-    if (status == SCREE_OK) status = scree_update_forces(simulation);
+    ++s->step;
+    scree_stage_begin(&s->clock);
+    scree_predict_motion(s);
+    // the walls follow their prescribed motion
+    scree_place_walls(s, (double)s->step * s->time_step);
+    scree_stage_end(&s->clock, SCREE_STAGE_PREDICT);
+    scree_status status = scree_update_neighbours(s);
+    if (status == SCREE_OK) status = scree_update_contacts(s);
+    if (status == SCREE_OK) status = check_contacts(s, report);
+    scree_stage_end(&s->clock, SCREE_STAGE_OTHER);
+    if (status == SCREE_OK) status = scree_update_forces(s);
     if (status == SCREE_OK)
     {
-        correct(simulation);
-        scree_stage_end(&simulation->clock, SCREE_STAGE_CORRECT);
-        status = scree_account_work(simulation);
-        scree_stage_end(&simulation->clock, SCREE_STAGE_WORK);
-        if (status == SCREE_OK) status = scree_account_wall_loads(simulation);
-        if (status == SCREE_OK) status = scree_update_averages(simulation);
+        scree_correct_motion(s);
+        scree_stage_end(&s->clock, SCREE_STAGE_CORRECT);
+        status = scree_account_work(s);
+        scree_stage_end(&s->clock, SCREE_STAGE_WORK);
+        if (status == SCREE_OK) status = scree_account_wall_loads(s);
     }
-    const int64_t unstable = status == SCREE_OK ? find_unstable(&simulation->particles) : -1;
-    scree_stage_end(&simulation->clock, SCREE_STAGE_OTHER);
+    return status;
+}
+
+/// What went wrong in the step of `s`, to the report. A failed device comes first: nothing it said counts.
+static scree_status tell_fault(const scree_simulation *s, scree_status status, scree_report *report)
+{
+    const scree_status state_of_device = scree_device_status(s->device, report);
+    if (state_of_device != SCREE_OK) return state_of_device;
+    const int64_t unstable = status == SCREE_OK ? s->buffers->first_unstable : -1;
     if (unstable >= 0)
     {
         scree_report_add(report,
                          "particle %lld has left the range of numbers at t = %g s; the time step of %g s is too long "
                          "for its contacts (critical: %g s): choose a smaller time.step",
-                         (long long)unstable, (double)simulation->step * simulation->time_step, simulation->time_step,
-                         simulation->counters.smallest_critical_step);
-        status = SCREE_UNSTABLE;
+                         (long long)unstable, (double)s->step * s->time_step, s->time_step,
+                         s->counters.smallest_critical_step);
+        return SCREE_UNSTABLE;
     }
+    if (status == SCREE_OUT_OF_MEMORY && s->device != NULL)
+        scree_report_add(report,
+                         "step %lld: GPU \"%s\" has no memory for %lld candidate pairs and %lld contacts (%.0f MB are "
+                         "free, in pieces): go on from the last checkpoint on another GPU or on the CPU",
+                         (long long)s->step, scree_device_name(s->device), (long long)s->counters.num_pairs,
+                         (long long)s->counters.num_contacts, (double)scree_device_free_memory(s->device) / 1e6);
     else if (status != SCREE_OK)
-        scree_report_add(report, "step %lld: %s", (long long)simulation->step, scree_status_text(status));
+        scree_report_add(report, "step %lld: %s", (long long)s->step, scree_status_text(status));
     // after a failure inside a step the state is half done: it can only be destroyed
-    return status == SCREE_OK ? SCREE_OK : SCREE_UNSTABLE;
+    return status == SCREE_OK || status == SCREE_OUT_OF_MEMORY ? status : SCREE_UNSTABLE;
+}
+
+scree_status scree_simulation_step(scree_simulation *simulation, scree_report *report)
+{
+    scree_simulation *there = scree_simulation_there(simulation);
+    scree_status status = advance(there, report);
+    if (there != simulation) scree_take_from_device(simulation);
+    if (status == SCREE_OK) status = scree_update_averages(simulation, report);
+    status = tell_fault(there, status, report);
+    scree_stage_end(&there->clock, SCREE_STAGE_OTHER);
+    return status;
 }

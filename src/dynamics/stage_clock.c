@@ -29,6 +29,7 @@ void scree_stage_clock_start(scree_stage_clock *clock)
 void scree_stage_clock_read(scree_stage_clock *clock, scree_stage stage)
 {
     const double wall = clock->wall, core = clock->core;
+    scree_device_status(clock->device, NULL);
     scree_stage_clock_start(clock);
     clock->times->wall[stage] += clock->wall - wall;
     clock->times->core[stage] += clock->core - core;
@@ -37,4 +38,5 @@ void scree_stage_clock_read(scree_stage_clock *clock, scree_stage stage)
 void scree_simulation_time_stages(scree_simulation *simulation, scree_stage_times *times)
 {
     simulation->clock.times = times;
+    if (simulation->there != NULL) simulation->there->clock.times = times;
 }

@@ -3,12 +3,14 @@
 #ifndef SCREE_STAGE_CLOCK_H
 #define SCREE_STAGE_CLOCK_H
 
+#include "core/device.h"
 #include "scree/simulation.h"
 
 /// Start from {0}, which is off.
 typedef struct scree_stage_clock
 {
     scree_stage_times *times; ///< borrowed; NULL: off
+    scree_device *device;     ///< that is waited for at the end of each stage; NULL: the CPU
     double wall, core;        ///< [s] at the end of the last stage
 } scree_stage_clock;
 

@@ -18,11 +18,17 @@
 
 struct scree_simulation
 {
+    scree_device *device; ///< where the arrays that kernels work on lie, NULL: the CPU
+    /// The same simulation with its arrays on a GPU, where the step is done; see on_device.h. NULL: it is done here.
+    struct scree_simulation *there;
+    bool is_observed; ///< what is there has been copied to the arrays here
+
     // constant: set by scree_simulation_create()
     const scree_scene *scene;      ///< borrowed; must outlive the simulation
     scree_shape *particle_shapes;  ///< (num_shapes) principal frames; entries not used by particles are {0}
     scree_shape *wall_shapes;      ///< (num_shapes) source frames; entries not used by walls are {0}
     scree_shape_view *shape_views; ///< (2 num_shapes) particle shapes, then wall shapes
+    scree_shape_view *views_here;  ///< (2 num_shapes) on the CPU what shape_views holds on a GPU; else NULL
     scree_force_law *laws;         ///< (num_materials, num_materials)
     int32_t num_shapes;
     int32_t num_materials;

@@ -1,5 +1,6 @@
 #define _DEFAULT_SOURCE /* M_PI */
 #include "dynamics/step_buffers.h"
+#include "dynamics/dynamics.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -43,6 +44,8 @@ scree_status scree_step_buffers_create(scree_simulation *simulation)
     SCREE_ALLOCATE(centres, num_particles)
     SCREE_ALLOCATE(radii, num_particles)
     SCREE_ALLOCATE(broad_phase_walls, num_walls)
+    SCREE_ALLOCATE(wall_input, num_walls)
+    SCREE_ALLOCATE(tally, 1)
 #undef SCREE_ALLOCATE
     if (!is_complete) return SCREE_OUT_OF_MEMORY; // the simulation's destroy frees what there is
 
@@ -59,6 +62,7 @@ scree_status scree_step_buffers_create(scree_simulation *simulation)
     {
         b->shape[num_particles + w] = simulation->num_shapes + simulation->walls[w].shape;
         b->material[num_particles + w] = simulation->walls[w].material;
+        b->wall_input[w].tree = simulation->shape_views[b->shape[num_particles + w]].tree;
     }
     return SCREE_OK;
 }
@@ -67,56 +71,65 @@ void scree_step_buffers_destroy(scree_simulation *simulation)
 {
     scree_step_buffers *b = simulation->buffers;
     if (b == NULL) return;
-    free(b->pose);
-    free(b->velocity);
-    free(b->angular_velocity);
-    free(b->inverse_mass);
-    free(b->inverse_radius);
-    free(b->shape);
-    free(b->material);
-    free(b->searched_pose);
-    free(b->last_pose);
-    free(b->travel);
-    free(b->boxes);
-    free(b->centres);
-    free(b->radii);
-    free(b->broad_phase_walls);
-    free(b->moving_wall);
-    free(b->wall_axes);
-    free(b->old_of_contact);
-    free(b->is_continued);
-    free(b->work_sums);
+    scree_device *device = b->device;
+    void *const arrays[] = {b->pose,
+                            b->velocity,
+                            b->angular_velocity,
+                            b->inverse_mass,
+                            b->shape,
+                            b->material,
+                            b->inverse_radius,
+                            b->searched_pose,
+                            b->last_pose,
+                            b->travel,
+                            b->boxes,
+                            b->centres,
+                            b->radii,
+                            b->moving_wall,
+                            b->wall_axes,
+                            b->broad_phase_walls,
+                            b->work_sums,
+                            b->load_sums,
+                            b->old_of_contact,
+                            b->is_continued,
+                            b->tally};
+    for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; ++k) scree_device_free(device, arrays[k]);
+    free(b->wall_input);
+    free(b->moving_wall_here);
+    free(b->wall_axes_here);
     free(b);
     simulation->buffers = NULL;
 }
 
+static scree_body_arrays body_arrays(const scree_step_buffers *b)
+{
+    const scree_body_arrays arrays = {b->pose, b->velocity, b->angular_velocity};
+    return arrays;
+}
+
 void scree_place_walls(scree_simulation *simulation, double time)
 {
-    scree_step_buffers *b = simulation->buffers;
-    const int64_t num_particles = simulation->particles.num_particles;
-    for (int32_t w = 0; w < simulation->num_walls; ++w)
+    scree_place_walls_args args = {0};
+    args.bodies = body_arrays(simulation->buffers);
+    for (int32_t first = 0; first < simulation->num_walls; first += SCREE_WALLS_AT_ONCE)
     {
-        scree_wall_state *wall = simulation->walls + w;
-        scree_wall_state_at(simulation->scene->walls + w, time, wall);
-        const scree_vec3 offset = scree_vec3_sub(wall->pose.position, wall->centre);
-        b->pose[num_particles + w] = wall->pose;
-        b->velocity[num_particles + w] =
-            scree_vec3_add(wall->velocity, scree_vec3_cross(wall->angular_velocity, offset));
-        b->angular_velocity[num_particles + w] = wall->angular_velocity;
+        int32_t num = 0;
+        for (; num < SCREE_WALLS_AT_ONCE && first + num < simulation->num_walls; ++num)
+        {
+            scree_wall_state *wall = simulation->walls + first + num;
+            scree_wall_state_at(simulation->scene->walls + first + num, time, wall);
+            const scree_vec3 offset = scree_vec3_sub(wall->pose.position, wall->centre);
+            args.walls[num].pose = wall->pose;
+            args.walls[num].velocity = scree_vec3_add(wall->velocity, scree_vec3_cross(wall->angular_velocity, offset));
+            args.walls[num].angular_velocity = wall->angular_velocity;
+        }
+        args.first = simulation->particles.num_particles + first;
+        scree_place_walls_launch_on(simulation->device, args, num);
     }
 }
 
 void scree_place_particles(scree_simulation *simulation)
 {
-    scree_step_buffers *b = simulation->buffers;
-    const scree_particles *particles = &simulation->particles;
-    for (int64_t i = 0; i < particles->num_particles; ++i)
-    {
-        b->pose[i].position = particles->position[i];
-        b->pose[i].orientation = particles->orientation[i];
-        b->pose[i].scale = particles->scale[i];
-        b->velocity[i] = particles->velocity[i];
-        b->angular_velocity[i] =
-            scree_angular_velocity(particles->angular_momentum[i], particles->inertia[i], particles->orientation[i]);
-    }
+    const scree_place_particles_args args = {body_arrays(simulation->buffers), simulation->particles};
+    scree_place_particles_launch_on(simulation->device, args, simulation->particles.num_particles);
 }

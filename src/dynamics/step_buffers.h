@@ -4,10 +4,14 @@
 #define SCREE_STEP_BUFFERS_H
 
 #include "dynamics/state.h"
+#include "dynamics/step_tally.h"
 #include "forces/forces.h"
 
+/// All arrays lie where the simulation's do, unless stated.
 typedef struct scree_step_buffers
 {
+    scree_device *device;
+
     // per body (num_bodies)
     scree_pose *pose;
     scree_vec3 *velocity;
@@ -26,6 +30,7 @@ typedef struct scree_step_buffers
     scree_vec3 *centres;       ///< (num_particles)
     scree_real *radii;         ///< (num_particles)
     scree_broad_phase_wall *broad_phase_walls; ///< (num_walls)
+    scree_broad_phase_wall *wall_input;        ///< (num_walls) the same, of the last search, on the CPU
     scree_real skin;                           ///< [m] of the last search
     double mean_radius;                        ///< [m] of the particles' bounding spheres
     scree_real moved;                          ///< [m] way of the fastest bodies between it and the present step
@@ -35,7 +40,11 @@ typedef struct scree_step_buffers
     // moving walls
     int32_t *moving_wall;       ///< (num_walls) index among the moving ones, or -1
     scree_wall_axis *wall_axes; ///< (num_moving_walls)
+    int32_t *moving_wall_here;  ///< the same two on the CPU
+    scree_wall_axis *wall_axes_here;
     int32_t num_moving_walls;
+    scree_real *load_sums;
+    int64_t max_load_sums;
 
     // contacts
     bool is_old_list_of_same_pairs; ///< old contacts can be found by the index of their candidate pair
@@ -43,16 +52,24 @@ typedef struct scree_step_buffers
     int64_t max_contacts;
     uint8_t *is_continued;
     int64_t max_old;
-    scree_work_sums *work_sums;
-    int64_t max_work_blocks;
+    scree_work_sums *work_sums; ///< of blocks of ended contacts, of blocks of contacts, and of these sums
+    int64_t max_work_sums;
+    int64_t num_ended_blocks;
+
+    scree_step_tally *tally;
+    int64_t first_unstable; ///< particle that was not finite at the end of the last step, or -1; on the CPU
 } scree_step_buffers;
 
 /// Allocates the arrays over bodies; num_walls from the simulation.
 scree_status scree_step_buffers_create(scree_simulation *simulation);
-/// Axes of the moving walls, and room for their loads.
+/// Axes of the moving walls.
 scree_status scree_wall_axes_create(scree_simulation *simulation);
 void scree_step_buffers_destroy(scree_simulation *simulation);
 
+// The stages of a step, in their order.
+
+/// First half kick and drift of the particles.
+void scree_predict_motion(scree_simulation *simulation);
 /// Poses and velocities of the walls at `time`, to the wall states and the body arrays.
 void scree_place_walls(scree_simulation *simulation, double time);
 /// Poses and velocities of the particles, as they are, to the body arrays.
@@ -64,8 +81,12 @@ scree_status scree_update_neighbours(scree_simulation *simulation);
 scree_status scree_update_contacts(scree_simulation *simulation);
 /// Forces of the contacts and of gravity on the particles.
 scree_status scree_update_forces(scree_simulation *simulation);
-/// Work of the contacts over the step just done.
+/// Second half kick.
+void scree_correct_motion(scree_simulation *simulation);
+/// Work of the contacts over the step just done. Waits for all that was asked before.
 scree_status scree_account_work(scree_simulation *simulation);
+/// Takes up what the kernels have counted so far.
+void scree_take_tally(scree_simulation *simulation);
 
 scree_body_motion scree_step_body_motion(const scree_step_buffers *buffers);
 

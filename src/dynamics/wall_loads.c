@@ -64,33 +64,53 @@ static double rate_of(const scree_simulation *s, int32_t wall, const scree_wall_
     return (double)scree_vec3_dot(axis->is_rotating ? state->angular_velocity : state->velocity, axis->direction);
 }
 
-scree_status scree_update_wall_loads(scree_simulation *simulation)
+/// Loads of all contacts, summed in groups of always the same ones; NULL: out of memory.
+static const scree_real *sum_loads(scree_simulation *s)
 {
-    const scree_step_buffers *b = simulation->buffers;
-    const int32_t num_moving = b->num_moving_walls;
-    if (num_moving == 0) return SCREE_OK;
-    const int64_t num_blocks = (simulation->contacts.num_contacts + SCREE_WALL_LOAD_BLOCK - 1) / SCREE_WALL_LOAD_BLOCK;
-    scree_real *sums = malloc(((size_t)(num_blocks * num_moving) + 1) * sizeof *sums);
-    if (sums == NULL) return SCREE_OUT_OF_MEMORY;
+    scree_step_buffers *b = s->buffers;
+    const int64_t num_moving = b->num_moving_walls;
+    int64_t num_parts = (s->contacts.num_contacts + SCREE_WALL_LOAD_BLOCK - 1) / SCREE_WALL_LOAD_BLOCK;
+    // sums of sums, down to one, take less than a 255th of them
+    const int64_t num_sums = (num_parts + num_parts / (SCREE_SUM_FAN_IN - 1) + 8) * num_moving;
+    if (scree_device_reserve(s->device, &b->load_sums, &b->max_load_sums, num_sums, sizeof *b->load_sums) != SCREE_OK)
+        return NULL;
 
     scree_wall_load_args args;
-    args.contacts = simulation->contacts;
+    args.contacts = scree_contact_list_view(&s->contacts);
     args.pose = b->pose;
     args.moving = b->moving_wall;
     args.axes = b->wall_axes;
-    args.num_moving = num_moving;
-    args.num_particles = (int32_t)simulation->particles.num_particles;
-    args.sums = sums;
-    scree_wall_load_launch(args, num_blocks);
+    args.num_moving = b->num_moving_walls;
+    args.num_particles = (int32_t)s->particles.num_particles;
+    args.sums = b->load_sums;
+    scree_wall_load_launch_on(s->device, args, num_parts);
 
-    for (int32_t w = 0; w < simulation->num_walls; ++w)
+    scree_real *parts = b->load_sums;
+    do {
+        const scree_wall_load_reduce_args reduce = {parts, num_parts, num_moving, parts + num_parts * num_moving};
+        const int64_t num = num_parts > 0 ? (num_parts + SCREE_SUM_FAN_IN - 1) / SCREE_SUM_FAN_IN : 1;
+        scree_wall_load_reduce_launch_on(s->device, reduce, num * num_moving);
+        parts = reduce.sums;
+        num_parts = num;
+    } while (num_parts > 1);
+    return parts;
+}
+
+scree_status scree_update_wall_loads(scree_simulation *simulation)
+{
+    const scree_step_buffers *b = simulation->buffers;
+    if (b->num_moving_walls == 0) return SCREE_OK;
+    const scree_real *sums = sum_loads(simulation);
+    scree_real *loads = calloc((size_t)b->num_moving_walls, sizeof *loads);
+    if (sums == NULL || loads == NULL)
     {
-        if (b->moving_wall[w] < 0) continue;
-        double load = 0;
-        for (int64_t k = 0; k < num_blocks; ++k) load += (double)sums[k * num_moving + b->moving_wall[w]];
-        simulation->wall_loads.load[w] = load;
+        free(loads);
+        return SCREE_OUT_OF_MEMORY;
     }
-    free(sums);
+    scree_device_read(simulation->device, loads, sums, (size_t)b->num_moving_walls * sizeof *loads);
+    for (int32_t w = 0; w < simulation->num_walls; ++w)
+        if (b->moving_wall_here[w] >= 0) simulation->wall_loads.load[w] = (double)loads[b->moving_wall_here[w]];
+    free(loads);
     return SCREE_OK;
 }
 
@@ -115,8 +135,8 @@ scree_status scree_account_wall_loads(scree_simulation *simulation)
     const scree_status status = scree_update_wall_loads(simulation);
     for (int32_t w = 0; status == SCREE_OK && w < simulation->num_walls; ++w)
     {
-        if (b->moving_wall[w] < 0) continue;
-        const double rate = rate_of(simulation, w, b->wall_axes + b->moving_wall[w]);
+        if (b->moving_wall_here[w] < 0) continue;
+        const double rate = rate_of(simulation, w, b->wall_axes_here + b->moving_wall_here[w]);
         simulation->wall_loads.work[w] += simulation->wall_loads.load[w] * rate * simulation->time_step;
         mark_revolution(simulation, w);
     }
@@ -126,18 +146,24 @@ scree_status scree_account_wall_loads(scree_simulation *simulation)
 scree_status scree_wall_axes_create(scree_simulation *simulation)
 {
     scree_step_buffers *b = simulation->buffers;
-    b->moving_wall = calloc((size_t)simulation->num_walls + 1, sizeof *b->moving_wall);
-    b->wall_axes = calloc((size_t)simulation->num_walls + 1, sizeof *b->wall_axes);
-    if (b->moving_wall == NULL || b->wall_axes == NULL) return SCREE_OUT_OF_MEMORY;
+    const int64_t num = simulation->num_walls;
+    b->moving_wall_here = calloc((size_t)num + 1, sizeof *b->moving_wall_here);
+    b->wall_axes_here = calloc((size_t)num + 1, sizeof *b->wall_axes_here);
+    b->moving_wall = scree_device_alloc(simulation->device, num + 1, sizeof *b->moving_wall);
+    b->wall_axes = scree_device_alloc(simulation->device, num + 1, sizeof *b->wall_axes);
+    if (b->moving_wall_here == NULL || b->wall_axes_here == NULL || b->moving_wall == NULL || b->wall_axes == NULL)
+        return SCREE_OUT_OF_MEMORY;
     for (int32_t w = 0; w < simulation->num_walls; ++w)
     {
         const scree_wall_def *def = simulation->scene->walls + w;
-        b->moving_wall[w] = -1;
+        b->moving_wall_here[w] = -1;
         if (def->motion.kind == SCREE_MOTION_FIXED) continue;
-        b->wall_axes[b->num_moving_walls] = axis_of(def);
-        b->moving_wall[w] = b->num_moving_walls++;
+        b->wall_axes_here[b->num_moving_walls] = axis_of(def);
+        b->moving_wall_here[w] = b->num_moving_walls++;
     }
-    return scree_wall_loads_create(&simulation->wall_loads, simulation->num_walls);
+    scree_device_write(simulation->device, b->moving_wall, b->moving_wall_here, (size_t)num * sizeof *b->moving_wall);
+    scree_device_write(simulation->device, b->wall_axes, b->wall_axes_here, (size_t)num * sizeof *b->wall_axes);
+    return SCREE_OK;
 }
 
 scree_wall_load scree_simulation_wall_load(const scree_simulation *simulation, int32_t wall)

@@ -32,4 +32,36 @@ SCREE_FN void scree_collision_at(scree_collision_args a, int64_t c)
     a.tangential[c] = (old >= 0 ? a.old_tangential[old] : 0) - tangential * a.time_step;
 }
 
+/// What a collision has cost from its start to its end.
+typedef struct scree_ended_collision
+{
+    double normal, tangential; ///< [J]
+    int32_t is_with_wall;
+} scree_ended_collision;
+
+typedef struct scree_ended_collisions_args
+{
+    const scree_candidate_pair *bodies; ///< (num_old)
+    const uint8_t *is_continued;        ///< (num_old)
+    const double *normal;               ///< [J] (num_old)
+    const double *tangential;           ///< [J] (num_old)
+    int32_t num_particles;
+    int64_t *places;              ///< (num_old + 1) first 1 for each that has ended, then the sums before
+    scree_ended_collision *ended; ///< out: those that have ended, in order
+} scree_ended_collisions_args;
+
+typedef scree_ended_collisions_args scree_ended_flag_args;
+
+SCREE_FN void scree_ended_flag_at(scree_ended_flag_args a, int64_t o) { a.places[o] = a.is_continued[o] ? 0 : 1; }
+
+SCREE_FN void scree_ended_collisions_at(scree_ended_collisions_args a, int64_t o)
+{
+    if (a.places[o + 1] == a.places[o]) return;
+    scree_ended_collision collision;
+    collision.normal = a.normal[o];
+    collision.tangential = a.tangential[o];
+    collision.is_with_wall = a.bodies[o].j >= a.num_particles ? 1 : 0;
+    a.ended[a.places[o]] = collision;
+}
+
 #endif

@@ -7,13 +7,20 @@
 #include "forces/collision_kernel.h"
 #include "forces/contact_force_kernel.h"
 #include "forces/gather_kernel.h"
+#include "forces/step_sums_kernel.h"
 #include "forces/wall_load_kernel.h"
 #include "forces/work_kernel.h"
 
-SCREE_DECLARE_LAUNCH(scree_contact_force) ///< over contacts
-SCREE_DECLARE_LAUNCH(scree_gather)        ///< over particles
-SCREE_DECLARE_LAUNCH(scree_collision)     ///< over contacts
-SCREE_DECLARE_LAUNCH(scree_wall_load)     ///< over blocks of SCREE_WALL_LOAD_BLOCK contacts
-SCREE_DECLARE_LAUNCH(scree_work)          ///< over blocks of SCREE_WORK_BLOCK contacts
+SCREE_DECLARE_LAUNCH(scree_contact_force)    ///< over contacts
+SCREE_DECLARE_LAUNCH(scree_gather)           ///< over particles
+SCREE_DECLARE_LAUNCH(scree_collision)        ///< over contacts
+SCREE_DECLARE_LAUNCH(scree_ended_flag)       ///< over old contacts
+SCREE_DECLARE_LAUNCH(scree_ended_collisions) ///< over old contacts
+SCREE_DECLARE_LAUNCH(scree_wall_load)        ///< over blocks of SCREE_WALL_LOAD_BLOCK contacts
+SCREE_DECLARE_LAUNCH(scree_work)             ///< over blocks of SCREE_WORK_BLOCK contacts
+SCREE_DECLARE_LAUNCH(scree_work_reduce)      ///< over groups of SCREE_SUM_FAN_IN parts
+SCREE_DECLARE_LAUNCH(scree_ended)            ///< over blocks of SCREE_WORK_BLOCK old contacts
+SCREE_DECLARE_LAUNCH(scree_wall_load_reduce) ///< over groups of SCREE_SUM_FAN_IN parts, times moving walls
+SCREE_DECLARE_LAUNCH(scree_indentations)     ///< over blocks of SCREE_WORK_BLOCK contacts
 
 #endif

@@ -2,3 +2,9 @@
 
 SCREE_DEFINE_LAUNCH(scree_collision)
 SCREE_DEFINE_LAUNCH(scree_wall_load)
+SCREE_DEFINE_LAUNCH(scree_work_reduce)
+SCREE_DEFINE_LAUNCH(scree_ended)
+SCREE_DEFINE_LAUNCH(scree_wall_load_reduce)
+SCREE_DEFINE_LAUNCH(scree_indentations)
+SCREE_DEFINE_LAUNCH(scree_ended_flag)
+SCREE_DEFINE_LAUNCH(scree_ended_collisions)

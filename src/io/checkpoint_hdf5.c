@@ -420,6 +420,11 @@ static scree_status load(scree_simulation *simulation, hid_t file, const char *p
 
 scree_status scree_checkpoint_load(scree_simulation *simulation, const char *path, scree_report *report)
 {
+    if (simulation->there != NULL)
+    {
+        scree_report_add(report, "%s: a checkpoint is loaded before the steps go to a GPU, not after", path);
+        return SCREE_INVALID_INPUT;
+    }
     if (access(path, F_OK) != 0)
     {
         scree_report_add(report, "there is no checkpoint %s", path);

@@ -152,6 +152,20 @@ template <class T> T atomicCAS(T *address, typename std::common_type<T>::type ex
     return old;
 }
 
+/// A read past the nearest cache; others may write there atomically.
+template <class T> T __ldcg(const T *address) { return __atomic_load_n(address, __ATOMIC_RELAXED); }
+inline long long __double_as_longlong(double x)
+{
+    long long bits;
+    std::memcpy(&bits, &x, sizeof bits);
+    return bits;
+}
+inline double __longlong_as_double(long long bits)
+{
+    double x;
+    std::memcpy(&x, &bits, sizeof x);
+    return x;
+}
 inline int __ffsll(long long x) { return __builtin_ffsll(x); }
 inline int __clzll(long long x) { return x == 0 ? 64 : __builtin_clzll(static_cast<unsigned long long>(x)); }
 inline int __popc(unsigned x) { return __builtin_popcount(x); }

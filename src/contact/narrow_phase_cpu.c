@@ -1,0 +1,7 @@
+#include "contact/narrow_phase_launch.h"
+
+SCREE_DEFINE_LAUNCH(scree_pair_flag)
+SCREE_DEFINE_LAUNCH(scree_pair_scatter)
+SCREE_DEFINE_LAUNCH_DYNAMIC(scree_mesh_apart)
+SCREE_DEFINE_LAUNCH_FEW(scree_overlap_pairs)
+SCREE_DEFINE_LAUNCH(scree_mesh_write)

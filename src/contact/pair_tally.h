@@ -1,0 +1,25 @@
+/// \file pair_tally.h
+/// What the kernels of the narrow phase count while they go over the pairs: sums of integers and maxima, which do not
+/// depend on who came first.
+#ifndef SCREE_PAIR_TALLY_H
+#define SCREE_PAIR_TALLY_H
+
+#include "contact/overlap_parts.h"
+#include "core/atomic_kernel.h"
+
+/// Zeroed before a search.
+typedef struct scree_pair_tally
+{
+    int64_t num_active;                            ///< pairs of meshes that are not known to be apart
+    int64_t num_taken;                             ///< of these, taken up by somebody
+    int64_t num_lacking[SCREE_LACK_CROSSINGS + 1]; ///< overlaps that were not computed for lack of room, by what lacked
+    scree_maximum most_results;                    ///< of one pair of meshes, if there was no room for them
+    scree_maximum most_found;                      ///< on one mesh by a sphere, if there was no room for them
+    int64_t num_contacts;                          ///< of all pairs
+    int64_t num_without_normal;
+    int64_t num_fallbacks;
+    int64_t num_inside; ///< centres of spheres inside the solid of a mesh
+    scree_maximum worst_residual;
+} scree_pair_tally;
+
+#endif

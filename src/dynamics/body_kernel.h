@@ -1,0 +1,57 @@
+/// \file body_kernel.h
+/// Where bodies are and how they move, to the arrays over all bodies: particles from their state, walls from the host.
+#ifndef SCREE_BODY_KERNEL_H
+#define SCREE_BODY_KERNEL_H
+
+#include "dynamics/particles.h"
+
+/// Walls of one launch: they travel with its arguments, so that nobody has to wait for a copy.
+#define SCREE_WALLS_AT_ONCE 8
+
+typedef struct scree_wall_motion
+{
+    scree_pose pose;
+    scree_vec3 velocity;         ///< [m/s] at the position of the pose
+    scree_vec3 angular_velocity; ///< [rad/s]
+} scree_wall_motion;
+
+typedef struct scree_body_arrays
+{
+    scree_pose *pose;             ///< (num_bodies)
+    scree_vec3 *velocity;         ///< (num_bodies)
+    scree_vec3 *angular_velocity; ///< (num_bodies)
+} scree_body_arrays;
+
+typedef struct scree_place_walls_args
+{
+    scree_body_arrays bodies;
+    int64_t first; ///< body that the first of these walls is
+    scree_wall_motion walls[SCREE_WALLS_AT_ONCE];
+} scree_place_walls_args;
+
+/// Wall k of this launch.
+SCREE_FN void scree_place_walls_at(scree_place_walls_args a, int64_t k)
+{
+    a.bodies.pose[a.first + k] = a.walls[k].pose;
+    a.bodies.velocity[a.first + k] = a.walls[k].velocity;
+    a.bodies.angular_velocity[a.first + k] = a.walls[k].angular_velocity;
+}
+
+typedef struct scree_place_particles_args
+{
+    scree_body_arrays bodies;
+    scree_particles particles;
+} scree_place_particles_args;
+
+/// Particle i as it is.
+SCREE_FN void scree_place_particles_at(scree_place_particles_args a, int64_t i)
+{
+    a.bodies.pose[i].position = a.particles.position[i];
+    a.bodies.pose[i].orientation = a.particles.orientation[i];
+    a.bodies.pose[i].scale = a.particles.scale[i];
+    a.bodies.velocity[i] = a.particles.velocity[i];
+    a.bodies.angular_velocity[i] =
+        scree_angular_velocity(a.particles.angular_momentum[i], a.particles.inertia[i], a.particles.orientation[i]);
+}
+
+#endif

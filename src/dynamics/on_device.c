@@ -1,0 +1,278 @@
+#include "dynamics/on_device.h"
+
+#include "contact/overlap_pairs_kernel.h"
+#include "contact/sphere_pairs_kernel.h"
+#include "dynamics/step_buffers.h"
+#include "polyhedra/shape_copy.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/// What a GPU is expected to hold at least: a dense bed.
+enum
+{
+    BED_PAIRS = 8,    ///< candidates per particle
+    BED_CONTACTS = 4, ///< contacts per particle
+    MAX_PIECES = 64,  ///< of an overlap, to begin with
+    MAX_SHAPE = 1024
+};
+
+/// Arrays grow by half.
+#define SLACK 1.5
+
+// ---- memory
+
+scree_device_memory scree_device_memory_of(const scree_simulation *simulation)
+{
+    const scree_particles *p = &simulation->particles;
+    bool has_meshes = false, has_spheres = false;
+    for (int64_t i = 0; i < p->num_particles; ++i)
+    {
+        const scree_shape_kind kind = simulation->shape_views[p->shape[i]].kind;
+        has_spheres |= kind == SCREE_KIND_SPHERE;
+        has_meshes |= kind == SCREE_KIND_MESH;
+    }
+    const size_t state =
+        5 * sizeof(scree_vec3) + sizeof(scree_quat) + 2 * sizeof(scree_real) + sizeof(scree_vec3) + 3 * sizeof(int32_t);
+    const size_t body = 3 * sizeof(scree_pose) + 2 * sizeof(scree_vec3) + 3 * sizeof(scree_real) + 2 * sizeof(int32_t) +
+                        (has_spheres ? sizeof(scree_sphere) : 0);
+    const size_t search = sizeof(scree_box) + sizeof(scree_vec3) + sizeof(scree_real) + 2 * sizeof(scree_lbvh_node) +
+                          4 * sizeof(int32_t) + 2 * (sizeof(uint64_t) + sizeof(int32_t)) + 2 * sizeof(int32_t) +
+                          sizeof(int64_t);
+    const size_t pair = sizeof(scree_candidate_pair) + 2 * sizeof(int32_t) + 2 * sizeof(uint64_t) + sizeof(int32_t) +
+                        2 * sizeof(int64_t);
+    const size_t mesh_pair = sizeof(scree_overlap_result) + sizeof(scree_pair_memory) + 2 * sizeof(int32_t);
+    const size_t list =
+        sizeof(scree_candidate_pair) + sizeof(int32_t) + 9 * sizeof(scree_real) + 9 * sizeof(scree_vec3) + 2;
+    scree_device_memory memory;
+    memory.per_particle = (int64_t)(state + body + search);
+    memory.per_pair = (int64_t)(SLACK * (double)(pair + (has_meshes ? mesh_pair : 0)));
+    memory.per_contact = (int64_t)(SLACK * (double)(2 * list + sizeof(int64_t) + 1));
+    const int64_t num = p->num_particles, num_pairs = simulation->counters.num_pairs,
+                  num_contacts = simulation->counters.num_contacts;
+    memory.num_pairs = num_pairs > BED_PAIRS * num ? num_pairs : BED_PAIRS * num;
+    memory.num_contacts = num_contacts > BED_CONTACTS * num ? num_contacts : BED_CONTACTS * num;
+    memory.total =
+        memory.per_particle * num + memory.per_pair * memory.num_pairs + memory.per_contact * memory.num_contacts;
+    return memory;
+}
+
+// ---- to the device
+
+/// A copy of `num` items on the device; NULL: out of memory.
+static void *copy(scree_device *device, const void *from, int64_t num, size_t size)
+{
+    void *to = scree_device_alloc(device, num > 0 ? num : 1, size);
+    if (to != NULL) scree_device_write(device, to, from, (size_t)num * size);
+    return to;
+}
+
+/// Shapes of particles and walls; the trees of the walls to the search.
+static scree_status copy_shapes(scree_simulation *there, const scree_simulation *here)
+{
+    const int32_t num = 2 * here->num_shapes;
+    scree_shape_view *views = calloc((size_t)num + 1, sizeof *views);
+    if (views == NULL) return SCREE_OUT_OF_MEMORY;
+    there->views_here = views;
+    scree_status status = SCREE_OK;
+    for (int32_t k = 0; k < num && status == SCREE_OK; ++k)
+        status = scree_shape_view_copy(there->device, views + k, here->shape_views + k);
+    if (status != SCREE_OK) return status;
+    there->shape_views = copy(there->device, views, num, sizeof *views);
+    return there->shape_views != NULL ? SCREE_OK : SCREE_OUT_OF_MEMORY;
+}
+
+/// The arrays over bodies.
+static scree_status copy_buffers(scree_simulation *there, const scree_simulation *here)
+{
+    const scree_step_buffers *from = here->buffers;
+    const int64_t num_particles = here->particles.num_particles, num_walls = here->num_walls;
+    const int64_t num_bodies = num_particles + num_walls;
+    scree_device *device = there->device;
+    scree_step_buffers *b = calloc(1, sizeof *b);
+    if (b == NULL) return SCREE_OUT_OF_MEMORY;
+    there->buffers = b;
+    b->device = device;
+    b->has_travel = from->has_travel;
+    b->skin = from->skin;
+    b->mean_radius = from->mean_radius;
+    b->first_unstable = -1;
+    bool is_complete = true;
+#define SCREE_COPY(array, num)                                   \
+    b->array = copy(device, from->array, num, sizeof *b->array); \
+    is_complete = is_complete && b->array != NULL;
+    SCREE_COPY(pose, num_bodies)
+    SCREE_COPY(velocity, num_bodies)
+    SCREE_COPY(angular_velocity, num_bodies)
+    SCREE_COPY(inverse_mass, num_bodies)
+    SCREE_COPY(inverse_radius, num_bodies)
+    SCREE_COPY(shape, num_bodies)
+    SCREE_COPY(material, num_bodies)
+    SCREE_COPY(searched_pose, num_bodies)
+    SCREE_COPY(last_pose, num_bodies)
+    SCREE_COPY(travel, num_bodies)
+    SCREE_COPY(boxes, num_particles)
+    SCREE_COPY(centres, num_particles)
+    SCREE_COPY(radii, num_particles)
+#undef SCREE_COPY
+    b->broad_phase_walls = scree_device_alloc(device, num_walls + 1, sizeof *b->broad_phase_walls);
+    b->wall_input = calloc((size_t)num_walls + 1, sizeof *b->wall_input);
+    b->tally = scree_device_alloc(device, 1, sizeof *b->tally);
+    if (!is_complete || b->broad_phase_walls == NULL || b->wall_input == NULL || b->tally == NULL)
+        return SCREE_OUT_OF_MEMORY;
+    scree_device_zero(device, b->tally, sizeof *b->tally);
+    for (int64_t w = 0; w < num_walls; ++w)
+        b->wall_input[w].tree = there->views_here[from->shape[num_particles + w]].tree;
+    return scree_wall_axes_create(there);
+}
+
+/// Most triangles of a shape of particles.
+static int32_t largest_shape(const scree_simulation *here)
+{
+    int32_t largest = 8;
+    for (int32_t k = 0; k < here->num_shapes; ++k)
+        if (here->shape_views[k].num_triangles > largest) largest = here->shape_views[k].num_triangles;
+    return largest;
+}
+
+/// Room of an overlap that most pairs of these shapes get along with; more is made where it is needed.
+static scree_overlap_room choose_room(int32_t largest)
+{
+    const int32_t max_pieces = largest < MAX_PIECES ? largest : MAX_PIECES;
+    const scree_overlap_room room = {max_pieces, largest < MAX_SHAPE ? largest : MAX_SHAPE, max_pieces};
+    return room;
+}
+
+static scree_status move(scree_simulation *there, scree_simulation *here)
+{
+    scree_device *device = there->device;
+    there->contacts.device = there->old_contacts.device = device;
+    there->contacts.acts_in_points = there->old_contacts.acts_in_points = here->contacts.acts_in_points;
+    there->broad_phase.device = there->narrow_phase.device = there->clock.device = device;
+    there->clock.times = here->clock.times;
+    there->narrow_phase.options = here->narrow_phase.options;
+    there->narrow_phase.separation = here->narrow_phase.separation;
+    there->narrow_phase.room = choose_room(largest_shape(here));
+    there->narrow_phase.num_lanes = scree_overlap_num_lanes(largest_shape(here));
+    scree_status status = scree_particles_copy(device, &there->particles, &here->particles);
+    if (status == SCREE_OK) status = copy_shapes(there, here);
+    if (status == SCREE_OK) status = copy_buffers(there, here);
+    if (status == SCREE_OK) status = scree_contact_list_copy(&there->contacts, &here->contacts);
+    if (status == SCREE_OK)
+    {
+        const int64_t num_laws = (int64_t)here->num_materials * here->num_materials;
+        there->laws = copy(device, here->laws, num_laws, sizeof *here->laws);
+        if (there->laws == NULL) status = SCREE_OUT_OF_MEMORY;
+    }
+    there->averages.collisions.device = there->averages.old_collisions.device = device;
+    if (status == SCREE_OK && here->averages.num_bins > 0)
+        status = scree_collisions_copy(&there->averages.collisions, &here->averages.collisions);
+    return status;
+}
+
+/// Refused if it is clear beforehand that memory will not do; otherwise it is taken now.
+static scree_status take_memory(const scree_simulation *s, scree_device *device, scree_report *report)
+{
+    const scree_device_memory memory = scree_device_memory_of(s);
+    const int64_t num_free = scree_device_free_memory(device);
+    if (memory.total <= num_free && scree_device_take(device, memory.total)) return SCREE_OK;
+    scree_report_add(report,
+                     "GPU \"%s\" has %.0f MB of free memory, the scene needs about %.0f MB (%lld particles of %lld "
+                     "bytes, %lld candidate pairs of %lld, %lld contacts of %lld): take fewer particles, another GPU, "
+                     "or run on the CPU",
+                     scree_device_name(device), (double)num_free / 1e6, (double)memory.total / 1e6,
+                     (long long)s->particles.num_particles, (long long)memory.per_particle, (long long)memory.num_pairs,
+                     (long long)memory.per_pair, (long long)memory.num_contacts, (long long)memory.per_contact);
+    return SCREE_OUT_OF_MEMORY;
+}
+
+scree_status scree_simulation_use_device(scree_simulation *simulation, scree_device *device, scree_report *report)
+{
+    if (device == NULL || simulation->there != NULL) return SCREE_INVALID_INPUT;
+    scree_status status = take_memory(simulation, device, report);
+    if (status != SCREE_OK) return status;
+    scree_simulation *there = calloc(1, sizeof *there);
+    if (there == NULL) return SCREE_OUT_OF_MEMORY;
+    // numbers, and what stays on the host; the arrays are replaced one after the other
+    there->device = device;
+    there->scene = simulation->scene;
+    there->num_shapes = simulation->num_shapes;
+    there->num_materials = simulation->num_materials;
+    there->num_walls = simulation->num_walls;
+    there->time_step = simulation->time_step;
+    there->step = simulation->step;
+    there->walls = simulation->walls;
+    there->wall_loads = simulation->wall_loads;
+    there->energies = simulation->energies;
+    there->counters = simulation->counters;
+    simulation->there = there;
+    status = move(there, simulation);
+    const scree_status state_of_device = scree_device_status(device, report);
+    if (state_of_device != SCREE_OK) status = state_of_device;
+    if (status != SCREE_OK)
+    {
+        if (status == SCREE_OUT_OF_MEMORY)
+            scree_report_add(report,
+                             "GPU \"%s\" has no memory for the state: take fewer particles, another GPU, or run "
+                             "on the CPU",
+                             scree_device_name(device));
+        scree_leave_device(simulation);
+        return status;
+    }
+    // the step's own arrays are not needed here any more
+    scree_contact_list_destroy(&simulation->old_contacts);
+    scree_broad_phase_destroy(&simulation->broad_phase);
+    const scree_narrow_phase kept = simulation->narrow_phase;
+    scree_narrow_phase_destroy(&simulation->narrow_phase);
+    simulation->narrow_phase.options = kept.options;
+    simulation->narrow_phase.separation = kept.separation;
+    simulation->is_observed = true;
+    return SCREE_OK;
+}
+
+// ---- from the device
+
+void scree_take_from_device(scree_simulation *simulation)
+{
+    const scree_simulation *there = simulation->there;
+    simulation->step = there->step;
+    simulation->energies = there->energies;
+    simulation->counters = there->counters;
+    simulation->is_observed = false;
+}
+
+scree_status scree_simulation_observe(scree_simulation *simulation, scree_report *report)
+{
+    scree_simulation *there = simulation->there;
+    if (there == NULL || simulation->is_observed) return SCREE_OK;
+    scree_particles_read(there->device, &simulation->particles, &there->particles);
+    scree_status status = scree_contact_list_copy(&simulation->contacts, &there->contacts);
+    if (status == SCREE_OK && simulation->averages.num_bins > 0)
+        status = scree_collisions_copy(&simulation->averages.collisions, &there->averages.collisions);
+    const scree_status state_of_device = scree_device_status(there->device, report);
+    if (state_of_device != SCREE_OK) return state_of_device;
+    simulation->is_observed = status == SCREE_OK;
+    return status;
+}
+
+void scree_leave_device(scree_simulation *simulation)
+{
+    scree_simulation *there = simulation->there;
+    if (there == NULL) return;
+    scree_device *device = there->device;
+    scree_step_buffers_destroy(there);
+    scree_particles_free(device, &there->particles);
+    scree_contact_list_destroy(&there->contacts);
+    scree_contact_list_destroy(&there->old_contacts);
+    scree_broad_phase_destroy(&there->broad_phase);
+    scree_narrow_phase_destroy(&there->narrow_phase);
+    scree_collisions_destroy(&there->averages.collisions);
+    scree_destroy_collision_scratch(&there->averages, device);
+    for (int32_t k = 0; there->views_here != NULL && k < 2 * there->num_shapes; ++k)
+        scree_shape_view_destroy(device, there->views_here + k);
+    free(there->views_here);
+    scree_device_free(device, there->shape_views);
+    scree_device_free(device, there->laws);
+    free(there);
+    simulation->there = NULL;
+}

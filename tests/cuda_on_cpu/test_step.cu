@@ -1,0 +1,254 @@
+// The whole step on the device, emulated or real: the state, energies, counters and loads of the CPU, bit for bit,
+// after hundreds of steps; and a run that changes sides at its checkpoints.
+#define _XOPEN_SOURCE 700
+extern "C"
+{
+#include "core/device.h"
+#include "dynamics/on_device.h"
+#include "dynamics/step_buffers.h"
+#include "scene_run.h"
+#include "scree/io.h"
+
+#include "io/run_folder.h"
+}
+#include "device_array.cuh"
+
+#include <string>
+
+/// Materials and shapes of all scenes; walls of some.
+static const char head[] = "materials:\n"
+                           "  - {name: stone, density: 2500, youngs_modulus: 1e7, poisson_ratio: 0.25}\n"
+                           "  - {name: steel, density: 7800, youngs_modulus: 1e8, poisson_ratio: 0.3}\n"
+                           "contact_laws:\n"
+                           "  - {materials: [stone, stone], friction_coefficient: 0.4, damping_ratio: 0.3}\n"
+                           "  - {materials: [stone, steel], friction_coefficient: 0.3, damping_ratio: 0.2}\n";
+
+static const char moving_walls[] =
+    "walls:\n"
+    "  - {name: floor, shape: floor, material: steel, position: [0, 0, -0.01],\n"
+    "     motion: {kind: translate, velocity: [0, 0, 0.4], start: 0.002, end: 0.02}}\n"
+    "  - {name: paddle, shape: paddle, material: steel, position: [0.02, 0, 0.009],\n"
+    "     motion: {kind: rotate, axis: [0, 0, 1], centre: [0, 0, 0], angular_velocity: 40}}\n"
+    "  - {name: gate, shape: paddle, material: steel, position: [0, -0.05, 0.009], removed_at: 0.004}\n";
+
+static const char wall_shapes[] = "  - {name: floor, source: box, size: [0.3, 0.3, 0.02]}\n"
+                                  "  - {name: paddle, source: box, size: [0.06, 0.004, 0.016]}\n";
+
+static std::string spheres()
+{
+    return std::string("name: spheres\ntime: {end: 0.012, step: 5e-5}\n") + head +
+           "shapes:\n  - {name: ball, source: sphere, size: 0.016}\n" + wall_shapes +
+           "particles:\n"
+           "  - {name: balls, shape: ball, material: stone, count: 70, seed: 4, velocity: [0, 0, -4], spacing: 1.02,\n"
+           "     size: {distribution: uniform, min: 0.01, max: 0.016},\n"
+           "     region: {min: [-0.05, -0.05, 0.018], max: [0.05, 0.05, 0.3]}}\n" +
+           moving_walls;
+}
+
+static std::string polyhedra()
+{
+    return std::string("name: polyhedra\ntime: {end: 0.012, step: 5e-5}\n") + head +
+           "shapes:\n"
+           "  - {name: rock, source: rock, triangles: 40, seed: 3}\n"
+           "  - {name: fine, source: rock, triangles: 300, seed: 5}\n"
+           "  - {name: schoenhardt, source: schoenhardt, size: 0.02}\n" +
+           wall_shapes +
+           "particles:\n"
+           "  - {name: rocks, shape: rock, material: stone, count: 14, seed: 1, velocity: [0, 0, -4], spacing: 1,\n"
+           "     size: {distribution: uniform, min: 0.015, max: 0.02},\n"
+           "     region: {min: [-0.04, -0.04, 0.018], max: [0.04, 0.04, 0.3]}}\n"
+           "  - {name: twisted, shape: schoenhardt, material: stone, count: 14, seed: 2, velocity: [0, 0, -7],\n"
+           "     spacing: 1, region: {min: [-0.04, -0.04, 0.145], max: [0.04, 0.04, 0.3]}}\n"
+           "  - name: fine\n    shape: fine\n    material: stone\n    bodies:\n"
+           "      - {size: 0.03, position: [0, 0, 0.25], velocity: [0, 0, -16]}\n"
+           "      - {size: 0.03, position: [0, 0, 0.285], velocity: [0, 0, -22]}\n" +
+           moving_walls;
+}
+
+/// Spheres and clumps among rocks, with averages of fields and collisions.
+static std::string mixed()
+{
+    return std::string("name: mixed\ntime: {end: 0.012, step: 5e-5}\n") + head +
+           "shapes:\n"
+           "  - {name: rock, source: rock, triangles: 40, seed: 3}\n"
+           "  - {name: ball, source: sphere, size: 0.016}\n"
+           "  - {name: trio, source: clump, spheres: [{position: [0, 0, 0], radius: 0.007},\n"
+           "     {position: [0.006, 0, 0], radius: 0.006}, {position: [0, 0.007, 0], radius: 0.005}]}\n" +
+           wall_shapes +
+           "particles:\n"
+           "  - {name: trios, shape: trio, material: stone, count: 8, seed: 5, velocity: [0, 0, -16],\n"
+           "     region: {min: [-0.03, -0.03, 0.25], max: [0.03, 0.03, 0.4]}}\n"
+           "  - {name: rocks, shape: rock, material: stone, count: 12, seed: 1, velocity: [0, 0, -4], spacing: 1,\n"
+           "     size: {distribution: uniform, min: 0.015, max: 0.02},\n"
+           "     region: {min: [-0.04, -0.04, 0.018], max: [0.04, 0.04, 0.3]}}\n"
+           "  - {name: balls, shape: ball, material: stone, count: 25, seed: 2, velocity: [0, 0, -7], spacing: 1.02,\n"
+           "     region: {min: [-0.04, -0.04, 0.115], max: [0.04, 0.04, 0.3]}}\n" +
+           moving_walls +
+           "fields: {measure: true, from: 0.001, period: 0.003, samples: 5, cells: [3, 3, 4],\n"
+           "  region: {min: [-0.05, -0.05, 0], max: [0.05, 0.05, 0.1]}, energy_bins: 12, energy_min: 1e-9,\n"
+           "  energy_max: 1e-2}\n";
+}
+
+/// A U that lands on its two legs, each a contact of its own.
+static std::string patches()
+{
+    const char *folder = std::getenv("SCREE_SOURCE_DIR");
+    return std::string("name: patches\ntime: {end: 0.012, step: 5e-5}\nsolver: {separate_patches: true}\n") + head +
+           "shapes:\n  - {name: u, source: file, file: " + (folder != nullptr ? folder : ".") +
+           "/models/u_shape.obj}\n" + wall_shapes +
+           "particles:\n  - name: one\n    shape: u\n    material: stone\n    bodies:\n"
+           "      - {size: 0.1, position: [0, 0, 0.056], velocity: [0, 0, -1],\n"
+           "         orientation: [0.7071067811865476, -0.7071067811865476, 0, 0]}\n"
+           "walls:\n  - {name: floor, shape: floor, material: steel, position: [0, 0, -0.01]}\n";
+}
+
+static scree_device *open_device(int32_t block)
+{
+    scree_device_def def = scree_default_device_def();
+    def.block = block;
+#ifdef CUDA_ON_CPU_ADDRESS
+    def.arena_bytes = 0; // so that the sanitizer sees the ends of the arrays
+#else
+    def.arena_bytes = 1 << 20;
+#endif
+    scree_device *device = nullptr;
+    scree_report report = {};
+    if (scree_device_open(&device, &def, &report) == SCREE_OK) return device;
+    for (int k = 0; k < report.num_messages; ++k) printf("%s\n", report.messages[k]);
+    std::exit(EXIT_FAILURE);
+}
+
+static void steps(scree_simulation *s, int64_t num)
+{
+    scree_report report = {};
+    for (int64_t k = 0; k < num; ++k)
+    {
+        const scree_status status = scree_simulation_step(s, &report);
+        SCREE_CHECK_INT(status, SCREE_OK);
+        if (status == SCREE_OK) continue;
+        for (int m = 0; m < report.num_messages; ++m) printf("%s\n", report.messages[m]);
+        break;
+    }
+    scree_report_clear(&report);
+}
+
+static void move(scree_simulation *s, scree_device *device)
+{
+    scree_report report = {};
+    SCREE_CHECK_INT(scree_simulation_use_device(s, device, &report), SCREE_OK);
+    for (int m = 0; m < report.num_messages; ++m) printf("%s\n", report.messages[m]);
+    scree_report_clear(&report);
+}
+
+template <class T> static bool is_same(const T &a, const T &b) { return memcmp(&a, &b, sizeof a) == 0; }
+
+static bool are_same(const double *a, const double *b, int64_t num)
+{
+    return memcmp(a, b, (size_t)num * sizeof *a) == 0;
+}
+
+/// Everything that can be asked of the two is the same.
+static void check_same(scree_simulation *here, scree_simulation *there)
+{
+    SCREE_CHECK_INT(scree_simulation_observe(there, NULL), SCREE_OK);
+    SCREE_CHECK(scree_simulation_hash(here) == scree_simulation_hash(there));
+    SCREE_CHECK(is_same(scree_simulation_energies(here), scree_simulation_energies(there)));
+    scree_counters a = scree_simulation_counters(here), b = scree_simulation_counters(there);
+    b.num_rebuilds = a.num_rebuilds; // one more where the side was changed
+    b.num_pairs = a.num_pairs;
+    SCREE_CHECK(is_same(a, b));
+    for (int32_t w = 0; w < here->num_walls; ++w)
+        SCREE_CHECK(is_same(scree_simulation_wall_load(here, w), scree_simulation_wall_load(there, w)));
+    const int64_t n = here->contacts.num_contacts;
+    SCREE_CHECK_INT(there->contacts.num_contacts, n);
+    for (int64_t c = 0; c < n && n == there->contacts.num_contacts; ++c)
+        SCREE_CHECK(is_same(here->contacts.normal_force[c], there->contacts.normal_force[c]) &&
+                    is_same(here->contacts.elastic_energy[c], there->contacts.elastic_energy[c]) &&
+                    is_same(here->contacts.moment[c], there->contacts.moment[c]));
+    if (!here->averages.is_on) return;
+    const scree_averages *p = &here->averages, *q = &there->averages;
+    SCREE_CHECK_INT(p->num_samples, q->num_samples);
+    SCREE_CHECK_INT(p->num_periods, q->num_periods);
+    SCREE_CHECK(are_same(p->grid.momentum, q->grid.momentum, 3 * p->grid.num_cells));
+    SCREE_CHECK(are_same(p->grid_total.square, q->grid_total.square, p->grid.num_cells));
+    SCREE_CHECK(are_same(p->spectrum.energy_normal, q->spectrum.energy_normal, p->spectrum.num_rows));
+    SCREE_CHECK(
+        are_same(p->spectrum_total.energy_tangential, q->spectrum_total.energy_tangential, p->spectrum.num_rows));
+    SCREE_CHECK(are_same(p->works.total, q->works.total, p->works.num_walls));
+    SCREE_CHECK(are_same(p->collisions.normal, q->collisions.normal, n));
+}
+
+/// All steps of a scene on both sides.
+static void check_scene(const std::string &text, int32_t block, int64_t least_contacts)
+{
+    scene_run here, there;
+    scene_run_start(&here, text.c_str());
+    scene_run_start(&there, text.c_str());
+    if (here.simulation == nullptr || there.simulation == nullptr) return;
+    scree_device *device = open_device(block);
+    move(there.simulation, device);
+    check_same(here.simulation, there.simulation);
+    int64_t most_contacts = 0;
+    for (int part = 0; part < 4; ++part)
+    {
+        steps(here.simulation, 60);
+        steps(there.simulation, 60);
+        check_same(here.simulation, there.simulation);
+        const int64_t num = here.simulation->contacts.num_contacts;
+        most_contacts = num > most_contacts ? num : most_contacts;
+    }
+    printf("%s: up to %lld contacts, %lld searches\n", here.file.scene.name, (long long)most_contacts,
+           (long long)scree_simulation_counters(there.simulation).num_rebuilds);
+    SCREE_CHECK(most_contacts >= least_contacts);
+    scene_run_end(&there);
+    SCREE_CHECK_INT(scree_device_status(device, NULL), SCREE_OK);
+    scree_device_close(device);
+    scene_run_end(&here);
+}
+
+static void test_spheres() { check_scene(spheres(), 128, 40); }
+static void test_polyhedra() { check_scene(polyhedra(), 32, 12); }
+static void test_mixed() { check_scene(mixed(), 50, 20); }
+static void test_patches() { check_scene(patches(), 128, 2); }
+
+/// From a checkpoint of the CPU on the device, and from one of the device on the CPU: the unbroken run.
+static void test_sides_change_at_checkpoints()
+{
+    const std::string text = mixed();
+    char folder[] = "/tmp/scree_test_step_XXXXXX";
+    SCREE_CHECK(mkdtemp(folder) != nullptr);
+    const std::string path = std::string(folder) + "/checkpoint.h5";
+    scene_run unbroken, run;
+    scene_run_start(&unbroken, text.c_str());
+    if (unbroken.simulation == nullptr) return;
+    steps(unbroken.simulation, 180);
+
+    scree_device *device = open_device(128);
+    for (int part = 0; part < 3; ++part)
+    {
+        scene_run_start(&run, text.c_str());
+        if (part > 0) SCREE_CHECK_INT(scree_checkpoint_load(run.simulation, path.c_str(), NULL), SCREE_OK);
+        if (part == 1) move(run.simulation, device);
+        steps(run.simulation, 60);
+        if (part == 2) break;
+        SCREE_CHECK_INT(scree_simulation_observe(run.simulation, NULL), SCREE_OK);
+        SCREE_CHECK_INT(scree_checkpoint_save(run.simulation, path.c_str(), NULL), SCREE_OK);
+        scene_run_end(&run);
+    }
+    check_same(unbroken.simulation, run.simulation);
+    scene_run_end(&run);
+    scene_run_end(&unbroken);
+    scree_device_close(device);
+    SCREE_CHECK(remove(path.c_str()) == 0 && remove(folder) == 0);
+}
+
+int main()
+{
+    if (is_without_device()) return SKIPPED;
+    SCREE_RUN(test_spheres);
+    SCREE_RUN(test_polyhedra);
+    SCREE_RUN(test_mixed);
+    SCREE_RUN(test_patches);
+    SCREE_RUN(test_sides_change_at_checkpoints);
+    return SCREE_TEST_END();
+}

@@ -1,10 +1,16 @@
+#define _DEFAULT_SOURCE /* madvise */
 #include "core/buffer.h"
 
 #include <stdlib.h>
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
 
 enum
 {
-    ALIGNMENT = 64
+    ALIGNMENT = 64,
+    LARGE_PAGE = 1 << 21,
+    MIN_LARGE_BYTES = 1 << 23 ///< from here on large pages waste little
 };
 
 void *scree_buffer_alloc(int64_t num_items, size_t item_size)
@@ -12,6 +18,16 @@ void *scree_buffer_alloc(int64_t num_items, size_t item_size)
     if (num_items < 0 || item_size == 0) return NULL;
     if ((uint64_t)num_items > (PTRDIFF_MAX - ALIGNMENT) / item_size) return NULL;
     const size_t num_bytes = (size_t)num_items * item_size;
+#if defined(__linux__) && defined(MADV_HUGEPAGE)
+    // a step goes over dozens of arrays at once: with small pages their addresses are more than a processor remembers
+    if (num_bytes >= MIN_LARGE_BYTES)
+    {
+        const size_t whole_pages = (num_bytes / LARGE_PAGE + 1) * LARGE_PAGE;
+        void *memory = aligned_alloc(LARGE_PAGE, whole_pages);
+        if (memory != NULL) (void)madvise(memory, whole_pages, MADV_HUGEPAGE); // a wish; it may be refused
+        return memory;
+    }
+#endif
     return aligned_alloc(ALIGNMENT, (num_bytes / ALIGNMENT + 1) * ALIGNMENT);
 }
 

@@ -1,0 +1,156 @@
+#!/usr/bin/env python3
+"""What a step should cost on a GPU, from the arrays that the kernels read and write: tables for docs/theory/gpu_cost.md.
+
+  tools/gpu_cost.py          prints the tables
+  tools/gpu_cost.py --write  puts them into the page
+"""
+import argparse
+import re
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+PAGE = ROOT / "docs" / "theory" / "gpu_cost.md"
+
+# numbers of reals and of other bytes of each type
+TYPES = {"real": (1, 0), "vec3": (3, 0), "quat": (4, 0), "pose": (8, 0), "int32": (0, 4), "int64": (0, 8), "uint8": (0, 1),
+         "pair": (0, 8), "memory": (4, 8)}
+SECTOR = 32  # bytes, the least that a GPU moves
+
+# Kernels of the steady step of polyhedra, one launch each. `own`: arrays at the index itself, each byte once. `far`: arrays
+# of the body with the higher id, of the step before or of a row, anywhere: whole sectors. `near`: those of the body with the
+# lower id; pairs are sorted by it, so they come once per particle. instructions: of the processor per index, counted.
+KERNELS = [
+    ("scree_predict", "particle", "src/dynamics/integrator_kernel.h",
+     dict(own="mass:real force:vec3 torque:vec3 velocity:vec3*3 angular_momentum:vec3*2 position:vec3*2 orientation:quat*2 "
+              "inertia:vec3 scale:real pose:pose angular_velocity:vec3"), 1021),
+    ("scree_travel", "particle", "src/dynamics/neighbour_kernel.h",
+     dict(own="shape:int32 pose:pose searched_pose:pose last_pose:pose*2 travel:real*2"), 320),
+    ("scree_mesh_apart", "pair", "src/contact/mesh_pairs_kernel.h",
+     dict(own="batch:int32 active:int32 num_results:int32 first_of_pair:int64 pairs:pair memory:memory", near="travel:real", far="travel:real"), 30),
+    ("scree_overlap_pairs", "contact", "src/contact/overlap_pairs_kernel.h",
+     dict(own="active:int32 pairs:pair results:real*21", near="pose:pose shape:int32", far="pose:pose shape:int32"),
+     13925),
+    ("scan of contacts", "pair", None, dict(own="first_of_pair:int64*3"), 10),
+    ("scree_mesh_write", "contact", "src/contact/mesh_pairs_kernel.h",
+     dict(own="results:real*21 pairs:pair bodies:pair patch:int32 volume:real indentation:real radius:real normal:vec3 "
+              "area_vector:vec3 torque_vector:vec3 arm:vec3 first_of_pair:int64"), 60),
+    ("scree_history_match", "pair", "src/contact/history_kernel.h",
+     dict(own="first_of_pair:int64 old_first_of_pair:int64 old_of_contact:int64 is_continued:uint8*2"), 52),
+    ("scree_contact_force", "contact", "src/forces/contact_force_kernel.h",
+     dict(own="bodies:pair volume:real indentation:real radius:real normal:vec3 arm:vec3 old_of_contact:int64 spring_force:vec3*2 "
+              "tangential_stiffness:real*2 torsion:real*2 rolling_moment:vec3*2 spring_energy:real*2 elastic_energy:real*2 "
+              "normal_force:vec3 tangential_force:vec3 elastic_force:real moment:vec3 elastic_work:real spring_work:real "
+              "is_slipping:uint8 is_turning:uint8",
+          near="pose:pose velocity:vec3 angular_velocity:vec3 inverse_mass:real material:int32",
+          far="pose:pose velocity:vec3 angular_velocity:vec3 inverse_mass:real material:int32"), 589),
+    ("scree_gather", "particle", "src/forces/gather_kernel.h", dict(own="row_begin:int64 mass:real force:vec3 torque:vec3 pose:pose"), 59),
+    ("scree_gather, per contact and side", "side", "src/forces/gather_kernel.h",
+     dict(own="row_pairs:int32", far="first_of_pair:int64 bodies:pair normal_force:vec3 tangential_force:vec3 arm:vec3 moment:vec3 pose:pose"), 52),
+    ("scree_correct", "particle", "src/dynamics/integrator_kernel.h",
+     dict(own="mass:real force:vec3 torque:vec3 velocity:vec3*3 angular_momentum:vec3*2 inertia:vec3 orientation:quat angular_velocity:vec3"),
+     185),
+    ("scree_work", "contact", "src/forces/work_kernel.h",
+     dict(own="bodies:pair arm:vec3 normal:vec3 elastic_force:real normal_force:vec3 tangential_force:vec3 moment:vec3 "
+              "elastic_work:real spring_work:real is_slipping:uint8 is_turning:uint8 tangential_stiffness:real",
+          near="pose:pose velocity:vec3 angular_velocity:vec3 inverse_mass:real inertia:vec3 material:int32",
+          far="pose:pose velocity:vec3 angular_velocity:vec3 inverse_mass:real inertia:vec3 material:int32"), 456),
+]
+
+# the packing that is predicted
+COUNTS = {"particle": 1e6, "pair": 8e6, "contact": 4e6, "side": 8e6}
+
+# name: GB/s, multiprocessors, GHz (boost), double and single operations per multiprocessor and clock (NVIDIA's data sheets)
+GPUS = {"V100 SXM2": (900, 80, 1.53, 32, 64), "A100 SXM 80 GB": (2039, 108, 1.41, 32, 64),
+        "H100 SXM": (3350, 132, 1.98, 64, 128), "RTX 4090": (1008, 128, 2.52, 2, 128)}
+THESIS = {"double": 72, "single": 36}  # ms on one V100, Bilock (2020), 7.1
+
+STREAMED = 0.75  # share of the bandwidth that a copy reaches
+ISSUE_STEADY = 0.5  # share of the lanes times share of the clocks in which they issue, kernels without loops
+ISSUE_OVERLAP = (0.1, 0.3)  # the same of the overlap: a guess with its width
+REAL_SHARE = 0.3  # of the instructions are arithmetic on reals: 0.27 to 0.32 of those of overlaps, counted
+
+
+def size_of(kind, precision):
+    reals, others = TYPES[kind]
+    return reals * (8 if precision == "double" else 4) + others
+
+
+def items(text):
+    """`name:type*n` to (name, type, n)."""
+    for part in text.split():
+        name, kind = part.split(":")
+        kind, _, num = kind.partition("*")
+        yield name, kind, int(num or 1)
+
+
+def bytes_of(arrays, precision, pairs_per_particle):
+    """Bytes per index of a kernel."""
+    total = sum(num * size_of(kind, precision) for _, kind, num in items(arrays.get("own", "")))
+    total += sum(num * size_of(kind, precision) for _, kind, num in items(arrays.get("near", ""))) / pairs_per_particle
+    for _, kind, num in items(arrays.get("far", "")):
+        size = size_of(kind, precision)
+        # a record begins anywhere at a multiple of its parts
+        total += num * SECTOR * (1 + (size - min(size, 8 if precision == "double" else 4)) / SECTOR)
+    return total
+
+
+def per_particle(per):
+    return COUNTS[per] / COUNTS["particle"]
+
+
+def seconds_of(kernel, gpu, precision, issue_overlap):
+    """Whichever takes longer: memory, issuing instructions, arithmetic on reals."""
+    name, per, _, arrays, instructions = kernel
+    bandwidth, num_processors, clock, double, single = GPUS[gpu]
+    issue = issue_overlap if name == "scree_overlap_pairs" else ISSUE_STEADY
+    per_second = num_processors * clock * 1e9 * issue
+    num = COUNTS[per]
+    return num * max(bytes_of(arrays, precision, per_particle(per)) / (STREAMED * bandwidth * 1e9),
+                     instructions / (per_second * 128),
+                     REAL_SHARE * instructions / (per_second * (double if precision == "double" else single)))
+
+
+def table_of_kernels():
+    lines = ["| kernel | per | how many | bytes, double | bytes, single | instructions | GB a step, double |", "|---|---|---|---|---|---|---|"]
+    sums = {"double": 0.0, "single": 0.0, "instructions": 0.0}
+    for name, per, _, arrays, instructions in KERNELS:
+        double, single = (bytes_of(arrays, precision, per_particle(per)) for precision in ("double", "single"))
+        lines.append(f"| {name} | {per} | {COUNTS[per]:.0e} | {double:.0f} | {single:.0f} | {instructions} | {double * COUNTS[per] / 1e9:.2f} |")
+        sums["double"] += double * COUNTS[per]
+        sums["single"] += single * COUNTS[per]
+        sums["instructions"] += instructions * COUNTS[per]
+    lines.append(f"| all | particle | 1e+06 | {sums['double'] / 1e6:.0f} | {sums['single'] / 1e6:.0f} | {sums['instructions'] / 1e6:.0f} | {sums['double'] / 1e9:.2f} |")
+    return "\n".join(lines)
+
+
+def table_of_times():
+    lines = ["| GPU | precision | all but the overlap [ms] | overlap [ms] | step [ms] | Bilock (2020), V100 [ms] |", "|---|---|---|---|---|---|"]
+    for gpu in GPUS:
+        for precision in ("double", "single"):
+            rest = 1e3 * sum(seconds_of(k, gpu, precision, 1) for k in KERNELS if k[0] != "scree_overlap_pairs")
+            overlap = [1e3 * seconds_of(k, gpu, precision, issue) for issue in reversed(ISSUE_OVERLAP) for k in KERNELS
+                       if k[0] == "scree_overlap_pairs"]
+            lines.append(f"| {gpu} | {precision} | {rest:.1f} | {overlap[0]:.1f} to {overlap[1]:.1f} | "
+                         f"{rest + overlap[0]:.0f} to {rest + overlap[1]:.0f} | {THESIS[precision] if gpu.startswith('V100') else ''} |")
+    return "\n".join(lines)
+
+
+def with_tables(page):
+    for name, table in (("kernels", table_of_kernels()), ("times", table_of_times())):
+        page, num = re.subn(rf"(<!-- {name} -->\n).*?(<!-- end -->)", lambda m: m[1] + table + "\n" + m[2], page, flags=re.DOTALL)
+        if num != 1:
+            raise SystemExit(f"{PAGE} has no place for the table of {name}")
+    return page
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--write", action="store_true", help="puts the tables into the page")
+    if parser.parse_args().write:
+        PAGE.write_text(with_tables(PAGE.read_text()))
+    else:
+        print(table_of_kernels(), table_of_times(), sep="\n\n")
+
+
+if __name__ == "__main__":
+    main()

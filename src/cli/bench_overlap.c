@@ -129,12 +129,10 @@ typedef struct bench_work
 /// One pair up to a stage, on the kernels themselves.
 static void run_stages(const scree_overlap_pair *pair, int last, scree_overlap_slice *slice, bench_work *work)
 {
-    scree_overlap_setup setup;
-    scree_overlap_sums sums;
     const scree_team team = scree_team_alone();
     slice->lack = SCREE_LACK_NOTHING;
-    if (scree_overlap_spheres_apart(pair) || !scree_overlap_set_up(pair, &setup) || last == STAGE_FRAME) return;
-    stop_unless(scree_overlap_filter(&team, slice, &setup));
+    if (scree_overlap_spheres_apart(pair) || !scree_overlap_set_up(pair, &slice->setup) || last == STAGE_FRAME) return;
+    stop_unless(scree_overlap_filter(&team, slice));
     work->kept += slice->body[0].num_triangles + slice->body[1].num_triangles;
     if (last == STAGE_FILTER) return;
     scree_overlap_prepare(&team, slice, SCREE_OVERLAP_FILTERED);
@@ -143,9 +141,9 @@ static void run_stages(const scree_overlap_pair *pair, int last, scree_overlap_s
     work->inside += slice->body[0].num_inside + slice->body[1].num_inside;
     if (last == STAGE_CROSSINGS) return;
     slice->num_patches = 1;
-    scree_overlap_sum(&team, slice, pair->shape, 0, &sums);
+    scree_overlap_sum(&team, slice, pair->shape, 0, &slice->sums);
     if (last == STAGE_SUMS) return;
-    const volatile scree_real volume = scree_overlap_to_world(slice, &setup, &sums, pair->pose[0]).volume;
+    const volatile scree_real volume = scree_overlap_to_world(slice, pair->pose[0]).volume;
     (void)volume;
 }
 

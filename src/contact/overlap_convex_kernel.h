@@ -201,7 +201,7 @@ SCREE_FN bool scree_convex_clip_edge(scree_overlap_slice *slice, int32_t is_of_b
 }
 
 /// Segments, crossings and inside counts of two convex bodies. False if the general path has to find them.
-SCREE_FN bool scree_convex_collect(scree_overlap_slice *slice, const scree_shape_view *const *shape)
+SCREE_FN_APART bool scree_convex_collect(scree_overlap_slice *slice, const scree_shape_view *const *shape)
 {
     scree_convex_planes *planes = slice->planes;
     slice->num_crossings = 0;

@@ -74,8 +74,8 @@ SCREE_FN int32_t scree_overlap_find_crossing(const scree_overlap_slice *slice, c
 }
 
 /// Ties each segment to the crossings at its ends. Every crossing ends two segments, one in each triangle of its edge.
-SCREE_FN void scree_overlap_tie_segments(const scree_team *team, scree_overlap_slice *slice,
-                                         const scree_shape_view *const *shape)
+SCREE_FN_APART void scree_overlap_tie_segments(const scree_team *team, scree_overlap_slice *slice,
+                                               const scree_shape_view *const *shape)
 {
     int32_t num_tied = 0;
     bool is_tied = true;
@@ -114,12 +114,12 @@ SCREE_FN int32_t scree_overlap_decide(const scree_face *own, int32_t k, const sc
 }
 
 /// Two triangles decided side by side: the ends that are found pair up into segments. False if there are too many.
-SCREE_FN bool scree_overlap_meet_by_sides(scree_overlap_slice *slice, int32_t triangle_a, int32_t triangle_b)
+SCREE_FN_APART bool scree_overlap_meet_by_sides(scree_overlap_slice *slice, int32_t triangle_a, int32_t triangle_b)
 {
     const scree_face *face[2];
     face[0] = &slice->body[0].triangles[triangle_a].face;
     face[1] = &slice->body[1].triangles[triangle_b].face;
-    scree_segment_end ends[2][6]; // first ends, last ends
+    scree_segment_end(*ends)[6] = slice->ends;
     int32_t num[2] = {0, 0};
     for (int32_t is_of_b = 0; is_of_b < 2; ++is_of_b)
     {
@@ -188,7 +188,7 @@ SCREE_FN bool scree_overlap_meet_listed(const scree_team *team, scree_overlap_sl
 
 /// All segments, by a team of several lanes: pairs whose boxes overlap are listed in their order, where the links will
 /// be, and judged whenever the list is full. False if there are too many.
-SCREE_FN bool scree_overlap_find_segments_together(const scree_team *team, scree_overlap_slice *slice)
+SCREE_FN_APART bool scree_overlap_find_segments_together(const scree_team *team, scree_overlap_slice *slice)
 {
     const scree_overlap_body *a = slice->body;
     const scree_overlap_body *b = slice->body + 1;
@@ -324,7 +324,7 @@ SCREE_FN int32_t scree_overlap_follow_links(scree_overlap_slice *slice, scree_ov
 /// Inside counts of all vertices of body `side`. Those outside the region of the filter are outside the other body;
 /// from there the counts go along the edges, changed by their crossings. A piece of the body that has neither outside
 /// vertices nor crossings asks once, by a ray.
-SCREE_FN void scree_overlap_find_inside(scree_overlap_slice *slice, int32_t side)
+SCREE_FN_APART void scree_overlap_find_inside(scree_overlap_slice *slice, int32_t side)
 {
     scree_overlap_body *body = slice->body + side;
     body->num_inside = 0;
@@ -352,6 +352,12 @@ SCREE_FN void scree_overlap_find_inside(scree_overlap_slice *slice, int32_t side
     }
 }
 
+SCREE_FN_APART void scree_overlap_finish_all(const scree_team *team, scree_overlap_body *body)
+{
+    for (int32_t t = scree_team_lane(team); t < body->num_triangles; t += scree_team_size(team))
+        scree_overlap_finish(body, t);
+}
+
 /// Segments, crossings and inside counts of both bodies. False if there are too many crossings.
 SCREE_FN bool scree_overlap_collect(const scree_team *team, scree_overlap_slice *slice,
                                     const scree_shape_view *const *shape)
@@ -362,9 +368,7 @@ SCREE_FN bool scree_overlap_collect(const scree_team *team, scree_overlap_slice 
         slice->num_segments = 0;
         slice->is_closed = true;
     }
-    for (int32_t side = 0; side < 2; ++side)
-        for (int32_t t = scree_team_lane(team); t < slice->body[side].num_triangles; t += scree_team_size(team))
-            scree_overlap_finish(slice->body + side, t);
+    for (int32_t side = 0; side < 2; ++side) scree_overlap_finish_all(team, slice->body + side);
     scree_team_sync(team);
 #ifdef SCREE_TEAM_OF_MANY
     const bool has_room = scree_overlap_find_segments_together(team, slice);

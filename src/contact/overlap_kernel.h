@@ -26,16 +26,6 @@ typedef struct scree_overlap_pair
     const scree_pose *pose[2];
 } scree_overlap_pair;
 
-/// What is known of a pair once its frame is chosen.
-typedef struct scree_overlap_setup
-{
-    scree_overlap_frame frame;
-    scree_posed_shape posed[2];
-    scree_vec3 direction;  ///< out of A into B, along the working axes, any length
-    scree_box box[2];      ///< of the whole bodies; A's exact, B's from outside
-    scree_real extents[2]; ///< largest side of each body's own box, in units of A
-} scree_overlap_setup;
-
 /// Are the bounding spheres apart?
 SCREE_FN bool scree_overlap_spheres_apart(const scree_overlap_pair *pair)
 {
@@ -58,7 +48,7 @@ SCREE_FN scree_box scree_overlap_body_box(const scree_posed_shape *posed, scree_
 }
 
 /// Frame and boxes. False if the boxes are apart.
-SCREE_FN bool scree_overlap_set_up(const scree_overlap_pair *pair, scree_overlap_setup *setup)
+SCREE_FN_APART bool scree_overlap_set_up(const scree_overlap_pair *pair, scree_overlap_setup *setup)
 {
     const scree_relative_pose pose = scree_relative_pose_make(pair->pose[0], pair->pose[1]);
     const scree_box box_a = pair->shape[0]->box;
@@ -100,40 +90,43 @@ SCREE_FN scree_real scree_overlap_load(const scree_team *team, scree_overlap_bod
 }
 
 /// Half-spaces: how far A reaches along the direction, and how far B reaches back. False if they are apart.
-SCREE_FN bool scree_overlap_half_spaces(const scree_team *team, scree_overlap_slice *slice,
-                                        const scree_overlap_setup *setup, scree_filter_region *region)
+SCREE_FN_APART bool scree_overlap_half_spaces(const scree_team *team, scree_overlap_slice *slice)
 {
+    const scree_overlap_setup *setup = &slice->setup;
     const scree_vec3 d = setup->direction;
     const scree_real size = scree_max(scree_box_reach(setup->box[0]), scree_box_reach(setup->box[1]));
     const scree_real rounding = 64 * SCREE_REAL_EPSILON * size * (scree_abs(d.x) + scree_abs(d.y) + scree_abs(d.z));
-    if (scree_team_leads(team)) slice->tolerance = SCREE_SIGN_MARGIN * SCREE_REAL_EPSILON * size;
-    scree_team_sync(team);
-    region[0].direction = scree_vec3_negate(d);
-    region[0].is_of_a = true;
-    region[1].direction = d;
-    region[1].is_of_a = false;
+    scree_real reach[2];
     for (int32_t side = 0; side < 2; ++side)
     {
         const int32_t other = 1 - side;
-        const scree_real reach =
-            scree_overlap_load(team, slice->body + other, setup->posed + other, region[side].direction);
-        region[side].reach = reach + rounding;
+        const scree_vec3 direction = side == 0 ? scree_vec3_negate(d) : d;
+        reach[side] = scree_overlap_load(team, slice->body + other, setup->posed + other, direction) + rounding;
+        if (!scree_team_leads(team)) continue;
+        slice->region[side].direction = direction;
+        slice->region[side].is_of_a = side == 0;
+        slice->region[side].reach = reach[side];
     }
-    return region[0].reach + region[1].reach >= 0;
+    if (scree_team_leads(team)) slice->tolerance = SCREE_SIGN_MARGIN * SCREE_REAL_EPSILON * size;
+    return reach[0] + reach[1] >= 0;
 }
 
-/// Keeps the triangles of one body that reach into the region. False: none, or slice->lack is set.
-SCREE_FN bool scree_overlap_keep(const scree_team *team, scree_overlap_slice *slice, int32_t side,
-                                 const scree_overlap_setup *setup, const scree_filter_region *region)
+/// Keeps the triangles of one body that reach into its region, of which the box is that of the other body. False: none,
+/// or slice->lack is set.
+SCREE_FN bool scree_overlap_keep(const scree_team *team, scree_overlap_slice *slice, int32_t side, const scree_box *box)
 {
     scree_overlap_body *body = slice->body + side;
-    const scree_posed_shape *posed = setup->posed + side;
+    const scree_posed_shape *posed = slice->setup.posed + side;
+    scree_filter_region *region = slice->region + side;
+    scree_team_sync(team);
+    if (scree_team_leads(team)) region->box = *box;
+    scree_team_sync(team);
     if (!scree_filter_uses_tree(posed->shape)) scree_filter_all(team, body, posed->shape, region->reach);
     else
     {
         // places of vertices are given as they are found: one lane
         bool has_room = true;
-        if (scree_team_leads(team)) has_room = scree_filter_tree(body, posed, region, setup->box[side]);
+        if (scree_team_leads(team)) has_room = scree_filter_tree(body, posed, region, slice->setup.box[side]);
         if (scree_team_any(team, !has_room))
         {
             if (scree_team_leads(team)) slice->lack = SCREE_LACK_PIECES;
@@ -146,23 +139,20 @@ SCREE_FN bool scree_overlap_keep(const scree_team *team, scree_overlap_slice *sl
     return body->num_triangles > 0;
 }
 
-/// Kept triangles of both. False: none of one body, or slice->lack is set.
-SCREE_FN bool scree_overlap_filter(const scree_team *team, scree_overlap_slice *slice, const scree_overlap_setup *setup)
+/// Kept triangles of both, once slice->setup is there. False: none of one body, or slice->lack is set.
+SCREE_FN bool scree_overlap_filter(const scree_team *team, scree_overlap_slice *slice)
 {
     if (scree_team_leads(team))
-        for (int32_t side = 0; side < 2; ++side) scree_filter_check_room(slice, side, setup->posed[side].shape);
+        for (int32_t side = 0; side < 2; ++side) scree_filter_check_room(slice, side, slice->setup.posed[side].shape);
     scree_team_sync(team);
-    if (slice->lack != SCREE_LACK_NOTHING) return false;
-    scree_filter_region region[2];
-    if (!scree_overlap_half_spaces(team, slice, setup, region)) return false;
+    if (slice->lack != SCREE_LACK_NOTHING || !scree_overlap_half_spaces(team, slice)) return false;
 
     // B against A's box, A against what was kept of B, and B again against what was kept of A
-    region[1].box = setup->box[0];
-    if (!scree_overlap_keep(team, slice, 1, setup, region + 1)) return false;
-    region[0].box = slice->body[1].box;
-    if (!scree_overlap_keep(team, slice, 0, setup, region)) return false;
-    region[1].box = slice->body[0].box;
-    scree_filter_again(team, slice->body + 1, region + 1);
+    if (!scree_overlap_keep(team, slice, 1, slice->setup.box)) return false;
+    if (!scree_overlap_keep(team, slice, 0, &slice->body[1].box)) return false;
+    if (scree_team_leads(team)) slice->region[1].box = slice->body[0].box;
+    scree_team_sync(team);
+    scree_filter_again(team, slice->body + 1, slice->region + 1);
     return slice->body[1].num_triangles > 0;
 }
 
@@ -209,9 +199,10 @@ SCREE_FN bool scree_overlap_has_normal(const scree_overlap_setup *setup, const s
 }
 
 /// Sums to a result in world axes.
-SCREE_FN scree_overlap_result scree_overlap_to_world(const scree_overlap_slice *slice, const scree_overlap_setup *setup,
-                                                     const scree_overlap_sums *sums, const scree_pose *pose_a)
+SCREE_FN_APART scree_overlap_result scree_overlap_to_world(const scree_overlap_slice *slice, const scree_pose *pose_a)
 {
+    const scree_overlap_setup *setup = &slice->setup;
+    const scree_overlap_sums *sums = &slice->sums;
     scree_overlap_result result = scree_overlap_nothing(SCREE_OVERLAP_NONE);
     const scree_real scale = pose_a->scale;
     const scree_real volume = sums->six_volume / 6;
@@ -247,13 +238,20 @@ SCREE_FN scree_overlap_result scree_overlap_to_world(const scree_overlap_slice *
 /// says so. The status is TOUCHING if there is something, whatever it is.
 SCREE_FN scree_overlap_status scree_overlap_find(const scree_team *team, const scree_overlap_pair *pair,
                                                  const scree_overlap_options *options, scree_overlap_slice *slice,
-                                                 scree_overlap_setup *setup, bool *used_fallback)
+                                                 bool *used_fallback)
 {
-    scree_team_sync(team);
-    if (scree_team_leads(team)) slice->lack = SCREE_LACK_NOTHING;
     *used_fallback = false;
-    if (scree_overlap_spheres_apart(pair) || !scree_overlap_set_up(pair, setup)) return SCREE_OVERLAP_NONE;
-    if (!scree_overlap_filter(team, slice, setup))
+    if (scree_overlap_spheres_apart(pair)) return SCREE_OVERLAP_NONE;
+    scree_team_sync(team);
+    bool may_touch = true;
+    if (scree_team_leads(team))
+    {
+        slice->lack = SCREE_LACK_NOTHING;
+        may_touch = scree_overlap_set_up(pair, &slice->setup);
+    }
+    if (scree_team_any(team, !may_touch)) return SCREE_OVERLAP_NONE;
+    scree_team_sync(team);
+    if (!scree_overlap_filter(team, slice))
         return slice->lack != SCREE_LACK_NOTHING ? SCREE_OVERLAP_WORKSPACE_FULL : SCREE_OVERLAP_NONE;
     const bool is_convex = options->use_convex_path && pair->shape[0]->is_convex && pair->shape[1]->is_convex;
     scree_overlap_scheme scheme = options->scheme;
@@ -282,16 +280,15 @@ SCREE_FN scree_overlap_status scree_overlap_find(const scree_team *team, const s
 }
 
 /// Results of the patches, one after the other; the first max_results are written. Returns their number. Of one lane.
-SCREE_FN int32_t scree_overlap_patch_results(const scree_overlap_pair *pair, scree_overlap_slice *slice,
-                                             const scree_overlap_setup *setup, scree_overlap_result *results,
-                                             int32_t max_results)
+SCREE_FN_APART int32_t scree_overlap_patch_results(const scree_overlap_pair *pair, scree_overlap_slice *slice,
+                                                   scree_overlap_result *results, int32_t max_results)
 {
     const scree_team team = scree_team_alone();
     int32_t num = 0;
     for (int32_t patch = 0; patch < slice->num_patches; ++patch)
     {
         scree_overlap_sum(&team, slice, pair->shape, patch, &slice->sums);
-        const scree_overlap_result result = scree_overlap_to_world(slice, setup, &slice->sums, pair->pose[0]);
+        const scree_overlap_result result = scree_overlap_to_world(slice, pair->pose[0]);
         // pieces without volume are noise
         if (result.status == SCREE_OVERLAP_NONE && num + slice->num_patches - patch > 1) continue;
         if (num < max_results) results[num] = result;
@@ -307,16 +304,15 @@ SCREE_FN int32_t scree_overlap_team_compute(const scree_team *team, const scree_
                                             const scree_overlap_options *options, scree_overlap_slice *slice,
                                             scree_overlap_result *results, int32_t max_results)
 {
-    scree_overlap_setup setup;
     bool used_fallback;
-    const scree_overlap_status status = scree_overlap_find(team, pair, options, slice, &setup, &used_fallback);
+    const scree_overlap_status status = scree_overlap_find(team, pair, options, slice, &used_fallback);
     if (!scree_team_leads(team)) return 1;
     results[0] = scree_overlap_nothing(status);
     if (status != SCREE_OVERLAP_TOUCHING) return 1;
     int32_t num = 1;
     if (options->separate_patches && scree_overlap_find_patches(slice, pair->shape) > 1)
-        num = scree_overlap_patch_results(pair, slice, &setup, results, max_results);
-    else results[0] = scree_overlap_to_world(slice, &setup, &slice->sums, pair->pose[0]);
+        num = scree_overlap_patch_results(pair, slice, results, max_results);
+    else results[0] = scree_overlap_to_world(slice, pair->pose[0]);
     for (int32_t i = 0; i < num && i < max_results; ++i) results[i].used_fallback = used_fallback;
     return num;
 }

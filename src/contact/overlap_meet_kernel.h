@@ -43,17 +43,6 @@ SCREE_FN scree_cut scree_cut_make(const scree_face *face, int32_t ups, bool is_o
     return cut;
 }
 
-/// A side of one of two triangles that passes through the other: where their segment starts or ends.
-typedef struct scree_segment_end
-{
-    int32_t is_of_b; ///< 1: a side of the triangle of B
-    int32_t side;
-    int32_t corner[2];
-    scree_real height[2]; ///< of these corners over the other plane; unless the point is there
-    scree_vec3 point;
-    bool has_point;
-} scree_segment_end;
-
 SCREE_FN void scree_segment_end_set(scree_segment_end *end, int32_t is_of_b, int32_t lone, int32_t other,
                                     const scree_real *height)
 {

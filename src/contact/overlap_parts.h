@@ -5,6 +5,7 @@
 #define SCREE_OVERLAP_PARTS_H
 
 #include "contact/overlap.h"
+#include "contact/overlap_frame_kernel.h"
 #include "contact/overlap_signs_kernel.h"
 
 /// A triangle that can take part. Its corners are vertices of the same body.
@@ -109,6 +110,17 @@ typedef struct scree_overlap_sums
     scree_real area; ///< of the overlap's surface
 } scree_overlap_sums;
 
+/// A side of one of two triangles that passes through the other: where their segment starts or ends.
+typedef struct scree_segment_end
+{
+    int32_t is_of_b; ///< 1: a side of the triangle of B
+    int32_t side;
+    int32_t corner[2];
+    scree_real height[2]; ///< of these corners over the other plane; unless the point is there
+    scree_vec3 point;
+    bool has_point;
+} scree_segment_end;
+
 /// Which capacity was too small.
 typedef enum scree_overlap_lack
 {
@@ -117,6 +129,33 @@ typedef enum scree_overlap_lack
     SCREE_LACK_SHAPE,     ///< slots per vertex or triangle of a shape
     SCREE_LACK_CROSSINGS, ///< crossings and segments
 } scree_overlap_lack;
+
+/// What a triangle must reach into: a box, and the half-space direction . v <= reach.
+typedef struct scree_filter_region
+{
+    scree_box box;
+    scree_vec3 direction;
+    scree_real reach;
+    bool is_of_a; ///< of a body below the other: the box does not bound it from above, else not from below
+} scree_filter_region;
+
+/// A shape seen from the working frame.
+typedef struct scree_posed_shape
+{
+    const scree_shape_view *shape;
+    scree_mat3 rows;
+    scree_vec3 offset;
+} scree_posed_shape;
+
+/// What is known of a pair once its frame is chosen.
+typedef struct scree_overlap_setup
+{
+    scree_overlap_frame frame;
+    scree_posed_shape posed[2];
+    scree_vec3 direction;  ///< out of A into B, along the working axes, any length
+    scree_box box[2];      ///< of the whole bodies; A's exact, B's from outside
+    scree_real extents[2]; ///< largest side of each body's own box, in units of A
+} scree_overlap_setup;
 
 /// Everything one overlap works on: borrowed buffers of one thread.
 typedef struct scree_overlap_slice
@@ -134,7 +173,10 @@ typedef struct scree_overlap_slice
     scree_box common;          ///< of the two boxes of kept triangles
     scree_real tolerance;      ///< 64 eps L, L the largest coordinate in play
     scree_real sign_tolerance; ///< the same, or 0: hierarchy throughout
+    scree_overlap_setup setup;
+    scree_filter_region region[2]; ///< what triangles of A, of B must reach into
     scree_overlap_sums sums;
+    scree_segment_end ends[2][6];  ///< of two triangles decided side by side: first ends, last ends
     scree_convex_planes planes[2]; ///< of the convex path
 } scree_overlap_slice;
 

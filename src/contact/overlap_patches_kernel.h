@@ -302,7 +302,7 @@ SCREE_FN void scree_patch_join_hollows(scree_overlap_slice *slice, const scree_s
 
 /// Labels the corners of the solid by patch, from 0; returns the number of patches. With several, slice->num_patches
 /// is set and sums can be asked of each.
-SCREE_FN int32_t scree_overlap_find_patches(scree_overlap_slice *slice, const scree_shape_view *const *shape)
+SCREE_FN_APART int32_t scree_overlap_find_patches(scree_overlap_slice *slice, const scree_shape_view *const *shape)
 {
     const int32_t num_corners = scree_patch_num_corners(slice);
     for (int32_t number = 0; number < num_corners; ++number)

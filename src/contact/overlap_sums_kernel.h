@@ -32,7 +32,7 @@ SCREE_FN scree_vec3 scree_segment_foot(scree_vec3 p0, scree_vec3 p1)
 }
 
 /// Point of the triangle's sides nearest to C.
-SCREE_FN scree_vec3 scree_nearest_on_sides(const scree_face *face, scree_vec3 middle)
+SCREE_FN_APART scree_vec3 scree_nearest_on_sides(const scree_face *face, scree_vec3 middle)
 {
     scree_vec3 nearest = scree_vec3_zero();
     scree_real least = SCREE_REAL_MAX;
@@ -50,7 +50,7 @@ SCREE_FN scree_vec3 scree_nearest_on_sides(const scree_face *face, scree_vec3 mi
 
 /// Foot of C on a triangle's plane, computed once. A thin triangle's normal is poor, so its plane is taken through the
 /// point of its sides nearest to C; the foot on a sliver is that point itself.
-SCREE_FN scree_vec3 scree_overlap_plane_foot(scree_overlap_triangle *triangle, scree_vec3 middle)
+SCREE_FN_APART scree_vec3 scree_overlap_plane_foot(scree_overlap_triangle *triangle, scree_vec3 middle)
 {
     if (triangle->has_foot) return triangle->foot;
     triangle->has_foot = true;
@@ -68,7 +68,7 @@ SCREE_FN scree_vec3 scree_overlap_plane_foot(scree_overlap_triangle *triangle, s
 }
 
 /// Gathers the corners of the overlap solid, or of one patch of it: crossings and inside vertices. Returns their box.
-SCREE_FN scree_box scree_overlap_gather_corners(scree_overlap_slice *slice, int32_t patch)
+SCREE_FN_APART scree_box scree_overlap_gather_corners(scree_overlap_slice *slice, int32_t patch)
 {
     const bool is_one = slice->num_patches == 1;
     scree_box box = scree_box_empty();
@@ -134,10 +134,33 @@ SCREE_FN void scree_overlap_add_edge(scree_overlap_sums *sums, const scree_edge_
     term->right->boundary = scree_vec3_sub(term->right->boundary, term->twice_area);
 }
 
-/// Segments: edges of the solid between a face of A and a face of B.
-SCREE_FN void scree_overlap_sum_segments(const scree_team *team, scree_overlap_slice *slice, int32_t patch,
-                                         scree_overlap_sums *sums)
+/// Where sums are added up: in a copy, which a lane that is always alone has in its registers, or in their place.
+SCREE_FN scree_overlap_sums *scree_overlap_sums_open(scree_overlap_sums *sums, scree_overlap_sums *copy)
 {
+#ifdef SCREE_TEAM_OF_MANY
+    (void)copy;
+    return sums;
+#else
+    *copy = *sums;
+    return copy;
+#endif
+}
+SCREE_FN void scree_overlap_sums_close(scree_overlap_sums *sums, const scree_overlap_sums *copy)
+{
+#ifdef SCREE_TEAM_OF_MANY
+    (void)sums;
+    (void)copy;
+#else
+    *sums = *copy;
+#endif
+}
+
+/// Segments: edges of the solid between a face of A and a face of B.
+SCREE_FN_APART void scree_overlap_sum_segments(const scree_team *team, scree_overlap_slice *slice, int32_t patch,
+                                               scree_overlap_sums *sums)
+{
+    scree_overlap_sums copy;
+    scree_overlap_sums *own = scree_overlap_sums_open(sums, &copy);
     for (int32_t begin = 0; begin < slice->num_segments; begin += scree_team_size(team))
     {
         const int32_t s = begin + scree_team_lane(team);
@@ -149,30 +172,33 @@ SCREE_FN void scree_overlap_sum_segments(const scree_team *team, scree_overlap_s
         scree_real squares = 0;
         if (counts)
         {
-            const scree_vec3 p = scree_vec3_sub(slice->crossings[segment->end[0]].point, sums->middle);
-            const scree_vec3 q = scree_vec3_sub(slice->crossings[segment->end[1]].point, sums->middle);
+            const scree_vec3 p = scree_vec3_sub(slice->crossings[segment->end[0]].point, own->middle);
+            const scree_vec3 q = scree_vec3_sub(slice->crossings[segment->end[1]].point, own->middle);
             squares = scree_vec3_dot(p, p) + scree_vec3_dot(p, q) + scree_vec3_dot(q, q);
             along = scree_vec3_sub(q, p);
-            term = scree_overlap_edge_term(sums->middle, p, q, slice->body[0].triangles + segment->triangle_a,
+            term = scree_overlap_edge_term(own->middle, p, q, slice->body[0].triangles + segment->triangle_a,
                                            slice->body[1].triangles + segment->triangle_b);
         }
         for (uint64_t turns = scree_team_ballot(team, counts); turns != 0; turns &= turns - 1)
         {
             if (scree_lowest_bit(turns) == scree_team_lane(team))
             {
-                sums->area_vector = scree_vec3_add(sums->area_vector, term.twice_area);
-                sums->torque = scree_vec3_add_scaled(sums->torque, along, squares);
-                scree_overlap_add_edge(sums, &term);
+                own->area_vector = scree_vec3_add(own->area_vector, term.twice_area);
+                own->torque = scree_vec3_add_scaled(own->torque, along, squares);
+                scree_overlap_add_edge(own, &term);
             }
             scree_team_sync(team);
         }
     }
+    scree_overlap_sums_close(sums, &copy);
 }
 
 /// Intervals: edges of the solid between two faces of the same body.
-SCREE_FN void scree_overlap_sum_intervals(scree_overlap_slice *slice, int32_t side, const scree_shape_view *shape,
-                                          int32_t patch, scree_overlap_sums *sums)
+SCREE_FN_APART void scree_overlap_sum_intervals(scree_overlap_slice *slice, int32_t side, const scree_shape_view *shape,
+                                                int32_t patch, scree_overlap_sums *sums)
 {
+    scree_overlap_sums copy;
+    scree_overlap_sums *own = scree_overlap_sums_open(sums, &copy);
     scree_overlap_body *body = slice->body + side;
     for (int32_t t = 0; t < body->num_triangles; ++t)
     {
@@ -195,22 +221,24 @@ SCREE_FN void scree_overlap_sum_intervals(scree_overlap_slice *slice, int32_t si
             while (scree_overlap_next_interval(slice, body, &walk, &interval))
             {
                 if (slice->num_patches > 1 && *scree_overlap_patch_of(slice, interval.corner[0]) != patch) continue;
-                const scree_vec3 x = scree_vec3_sub(interval.point[0], sums->middle);
-                const scree_vec3 y = scree_vec3_sub(interval.point[1], sums->middle);
+                const scree_vec3 x = scree_vec3_sub(interval.point[0], own->middle);
+                const scree_vec3 y = scree_vec3_sub(interval.point[1], own->middle);
                 const scree_edge_term term = scree_overlap_edge_term(
-                    sums->middle, x, y, scree_overlap_finish(body, left_face), scree_overlap_finish(body, right_face));
-                scree_overlap_add_edge(sums, &term);
+                    own->middle, x, y, scree_overlap_finish(body, left_face), scree_overlap_finish(body, right_face));
+                scree_overlap_add_edge(own, &term);
             }
         }
     }
+    scree_overlap_sums_close(sums, &copy);
 }
 
 /// The part of each term's moment that belongs to the foot on the plane, and the certificate: the area vectors of
 /// the two parts of the surface, each from the faces' own normals, must cancel.
-SCREE_FN void scree_overlap_sum_faces(scree_overlap_slice *slice, scree_overlap_sums *sums)
+SCREE_FN_APART void scree_overlap_sum_faces(scree_overlap_slice *slice, scree_overlap_sums *sums)
 {
     scree_vec3 twice_sum = scree_vec3_zero();
     scree_real twice_area = 0;
+    scree_vec3 moment = sums->moment;
     for (int32_t side = 0; side < 2; ++side)
     {
         const scree_overlap_body *body = slice->body + side;
@@ -219,7 +247,7 @@ SCREE_FN void scree_overlap_sum_faces(scree_overlap_slice *slice, scree_overlap_
             const scree_overlap_triangle *triangle = body->triangles + t;
             if (!body->kept[t].is_finished || !triangle->has_foot) continue;
             const scree_real six_volume = scree_vec3_dot(triangle->foot, triangle->boundary);
-            sums->moment = scree_vec3_add_scaled(sums->moment, triangle->foot, six_volume);
+            moment = scree_vec3_add_scaled(moment, triangle->foot, six_volume);
             const scree_real n2 = scree_vec3_dot(triangle->face.normal, triangle->face.normal);
             if (!(n2 > 0)) continue;
             const scree_real along = scree_vec3_dot(triangle->face.normal, triangle->boundary);
@@ -227,6 +255,7 @@ SCREE_FN void scree_overlap_sum_faces(scree_overlap_slice *slice, scree_overlap_
             twice_area += scree_abs(along) / scree_sqrt(n2);
         }
     }
+    sums->moment = moment;
     sums->area = twice_area / 2;
     sums->residual = twice_area > 0 ? scree_vec3_length(twice_sum) / twice_area : 0;
 }

@@ -14,23 +14,6 @@
 #include "contact/overlap_parts.h"
 #include "core/team.h"
 
-/// What a triangle must reach into: a box, and the half-space direction . v <= reach.
-typedef struct scree_filter_region
-{
-    scree_box box;
-    scree_vec3 direction;
-    scree_real reach;
-    bool is_of_a; ///< of a body below the other: the box does not bound it from above, else not from below
-} scree_filter_region;
-
-/// A shape seen from the working frame.
-typedef struct scree_posed_shape
-{
-    const scree_shape_view *shape;
-    scree_mat3 rows;
-    scree_vec3 offset;
-} scree_posed_shape;
-
 SCREE_FN bool scree_filter_uses_tree(const scree_shape_view *shape) { return shape->wide_tree.nodes != NULL; }
 
 SCREE_FN scree_vec3 scree_posed_vertex(const scree_posed_shape *posed, int32_t v)
@@ -40,8 +23,8 @@ SCREE_FN scree_vec3 scree_posed_vertex(const scree_posed_shape *posed, int32_t v
 
 /// All vertices into the working frame, in the order of the shape. Returns the largest direction . v; the depths are
 /// -direction . v until the reach of the half-space is known.
-SCREE_FN scree_real scree_filter_load_all(const scree_team *team, scree_overlap_body *body,
-                                          const scree_posed_shape *posed, scree_vec3 direction)
+SCREE_FN_APART scree_real scree_filter_load_all(const scree_team *team, scree_overlap_body *body,
+                                                const scree_posed_shape *posed, scree_vec3 direction)
 {
     const int32_t num = posed->shape->num_vertices;
     scree_real most = -SCREE_REAL_MAX;
@@ -70,8 +53,8 @@ SCREE_FN bool scree_filter_misses(const scree_filter_region *region, const scree
 }
 
 /// Keeps triangles of a loaded body that reach into the half-space, of which the reach is known now.
-SCREE_FN void scree_filter_all(const scree_team *team, scree_overlap_body *body, const scree_shape_view *shape,
-                               scree_real reach)
+SCREE_FN_APART void scree_filter_all(const scree_team *team, scree_overlap_body *body, const scree_shape_view *shape,
+                                     scree_real reach)
 {
     // what was loaded is the distance along the direction of the other's half-space, which is opposite
     scree_overlap_vertex *vertices = body->vertices;
@@ -151,8 +134,8 @@ SCREE_FN scree_filter_region scree_filter_in_body(const scree_posed_shape *posed
 
 /// Keeps triangles through the tree that reach into the half-space and may meet the box; `body_box` is the box of the
 /// whole body. False if the buffers are too small.
-SCREE_FN bool scree_filter_tree(scree_overlap_body *body, const scree_posed_shape *posed,
-                                const scree_filter_region *region, scree_box body_box)
+SCREE_FN_APART bool scree_filter_tree(scree_overlap_body *body, const scree_posed_shape *posed,
+                                      const scree_filter_region *region, scree_box body_box)
 {
     const scree_filter_region turned = scree_filter_in_body(posed, region, body_box);
     const scree_shape_view *shape = posed->shape;
@@ -237,8 +220,8 @@ SCREE_FN void scree_filter_end(const scree_team *team, scree_overlap_body *body,
 }
 
 /// Boxes of the kept triangles, clipped to the half-space; drops those that do not reach into the region with it.
-SCREE_FN void scree_filter_clip(const scree_team *team, scree_overlap_body *body, const scree_filter_region *region,
-                                scree_real margin)
+SCREE_FN_APART void scree_filter_clip(const scree_team *team, scree_overlap_body *body,
+                                      const scree_filter_region *region, scree_real margin)
 {
     const scree_vec3 margins = scree_vec3_make(margin, margin, margin);
     const int32_t num_before = body->num_triangles;
@@ -261,7 +244,8 @@ SCREE_FN void scree_filter_clip(const scree_team *team, scree_overlap_body *body
 }
 
 /// Drops triangles that do not reach into a smaller region with the same half-space.
-SCREE_FN void scree_filter_again(const scree_team *team, scree_overlap_body *body, const scree_filter_region *region)
+SCREE_FN_APART void scree_filter_again(const scree_team *team, scree_overlap_body *body,
+                                       const scree_filter_region *region)
 {
     const int32_t num_before = body->num_triangles;
     int32_t num = 0;

@@ -8,6 +8,13 @@
 
 #include "core/bits.h"
 
+/// A function with registers and stack of its own on a GPU: what one lane does, or what is seldom done.
+#if defined(__CUDACC__) && !defined(CUDA_ON_CPU_CUDA_RUNTIME_H)
+#define SCREE_FN_APART static __host__ __device__ __noinline__
+#else
+#define SCREE_FN_APART SCREE_FN
+#endif
+
 typedef struct scree_team
 {
     int32_t lane; ///< of this thread, in [0, size)

@@ -22,7 +22,8 @@ LIMITS = {"80": (64, 32), "90": (64, 32), "120": (48, 24)}
 REASONS = {
     "scree_particle_pairs": "32 keys wait in a batch, so that one atomic serves them all; runs at neighbour searches only",
     "scree_wall_pairs": "as scree_particle_pairs",
-    "scree_overlap_pairs": "a whole overlap in one thread, with its index of 64 boxes and its working values",
+    "scree_overlap_pairs": "a whole overlap by a team of lanes; the frame is that of the results and of the steps that one "
+    "lane does (walk over a tree, sums over edges, patches), which keep registers of their callers",
 }
 
 HEAD = """# What the kernels take on a GPU

@@ -1,0 +1,238 @@
+"""A small calibration rig over triangles, friction and the tangential spring: makes README.md and its plots.
+
+Usage: python run.py [--keep | --finished]
+  --keep       plots and page again from results.json, without computing anything
+  --finished   the same from the runs that are finished, of a study that was broken off
+QUICK=1 in the environment takes 25 rocks, one seed and three cases of each kind. A study that was broken off goes on where it stopped.
+"""
+
+import json
+import math
+import os
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+from scipy.optimize import least_squares
+
+FOLDER = Path(__file__).resolve().parent
+ROOT = FOLDER.parent.parent
+sys.path[:0] = [str(ROOT / "tools"), str(FOLDER)]
+from ensemble import Ensemble  # noqa: E402
+from rig import rig, rock_scale, write  # noqa: E402
+from run_folder import Run  # noqa: E402
+
+PROGRAM = Path(os.environ.get("SCREE_PROGRAM", ROOT / "build" / "release" / "scree"))
+QUICK = os.environ.get("QUICK") == "1"
+RESULTS = FOLDER / "results.json"
+RUNS = ROOT / "runs" / ("calibration_rig_quick" if QUICK else "calibration_rig")
+PROPORTIONS = {"count": 50, "scale": 0.75, "depth": 0.026, "opening": 0.3, "end": 1.05, "step": 2.6e-5}
+TRIANGLES = (10, 20, 40, 60, 100, 150)
+FRICTION = (0.1, 0.2, 0.6, 0.8)
+SEEDS, FEW_SEEDS = 3, 1
+if QUICK:
+    PROPORTIONS |= {"count": 25, "end": 0.9}
+    TRIANGLES, FRICTION, SEEDS = (10, 40, 150), (0.1, 0.8), 1
+BAND = (33, 42)  # of the experiments of the source [degrees]
+COLUMNS = (("angle", "angle of repose [degrees]", 1), ("flow", "flow energy [mJ]", 1e3))
+FLOW = 0.6  # time after the opening of the doors over which the flow energy is taken [s]
+LONG = PROPORTIONS["end"] + 0.5  # end of the runs without tangential spring [s]
+
+
+def cases():
+    """Name: (what differs from 40 triangles and the friction of the source, number of seeds)."""
+    all_cases = {f"triangles_{n}": ({"triangles": n}, SEEDS) for n in TRIANGLES}
+    all_cases["no_spring"] = ({"spring": 0, "end": LONG}, FEW_SEEDS)
+    all_cases |= {f"friction_{mu:g}": ({"friction": mu}, FEW_SEEDS) for mu in FRICTION}
+    all_cases["smooth_sides"] = ({"side_friction": 0}, FEW_SEEDS)
+    return all_cases
+
+
+def compute():
+    for name, (changes, _) in cases().items():
+        write(RUNS / f"{name}.yaml", rig(rock_scale(PROGRAM, changes.get("triangles", 40)), PROPORTIONS, **changes))
+    # seed by seed, so that a study that is broken off has a bit of everything; what has few seeds comes second
+    jobs = sorted(((seed, name) for name, (_, seeds) in cases().items() for seed in range(1, seeds + 1)),
+                  key=lambda job: max(job[0], 1 + job[1].startswith("friction") + 2 * job[1].startswith("smooth")))
+
+    def run(job):
+        seed, name = job
+        ensemble = ensemble_of(name, seed)
+        if ensemble.run(jobs=1):
+            raise SystemExit(f"{ensemble.members[0].folder} did not finish; see messages.txt there")
+
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        list(pool.map(run, jobs))
+
+
+def ensemble_of(name, seed):
+    return Ensemble(RUNS / f"{name}.yaml", RUNS / name, [(["particles.fill.seed"], [str(seed)])], program=PROGRAM)
+
+
+def measure(name, seed):
+    """Numbers of a run. Flow energy: mean of the kinetic energy after the opening of the doors."""
+    member = ensemble_of(name, seed).members[0]
+    series, summary = Run(member.folder).series(), member.summary()
+    time, moving = series["time"], series["kinetic"] + series["rotational"]
+    during = (time >= PROPORTIONS["opening"]) & (time <= PROPORTIONS["opening"] + FLOW)
+    counters = summary["counters"]
+    weight = summary["mass"] * 9.81
+    row = {
+        "case": name, "seed": seed, "angle": summary["repose_angle_degrees"], "residual": summary["repose_fit_residual"],
+        "flow": float(np.trapezoid(moving[during], time[during]) / np.ptp(time[during])),
+        "peak": float(moving[during].max()), "rest": float(moving[-1]), "height": summary["energies"]["potential"] / weight,
+        "coordination": counters["coordination_number"], "balance": abs(summary["energy_error"]),
+        "measured_step": counters["smallest_critical_step"], "deepest": counters["largest_indentation"],
+        "mass": summary["mass"],
+        # the summary knows the time of the last session only
+        "seconds": summary["processor_seconds"] if summary["steps_run"] == summary["num_steps"] else None,
+    }
+    if name in ("no_spring", "triangles_40") and seed == 1:
+        row |= {"time": time.tolist(), "moving": moving.tolist(), "heights": (series["potential"] / weight).tolist()}
+        row |= angles(Run(member.folder))
+    return row
+
+
+def angles(run):
+    """Angle of repose over time, from the frames after the flow, as scree measures it at the end."""
+    frames, width = run.surfaces(), PROPORTIONS["scale"] * 0.2 / 20
+    kept = [k for k, time in enumerate(frames.times) if time >= PROPORTIONS["end"] - 0.26]
+    found = []
+    for k in kept:
+        points = frames.read(k)["points"].astype(float)
+        heights = np.zeros(20)
+        bins = np.floor(points[:, 0] / width).astype(int)
+        inside = (bins >= 0) & (bins < 20) & (points[:, 2] < PROPORTIONS["scale"] * 0.09)
+        np.maximum.at(heights, bins[inside], points[inside, 2])
+        found.append(fitted_angle((np.arange(20) + 0.5) * width, heights))
+    return {"angle_times": frames.times[kept].tolist(), "angles": found}
+
+
+def fitted_angle(x, heights):
+    """Steepest slope of the sigmoid of least squares [degrees]."""
+    start = (heights.max(), 50.0, x[np.argmin(np.abs(heights - heights.max() / 2))])
+    fit = least_squares(lambda p: p[0] / (1 + np.exp(np.clip(p[1] * (x - p[2]), -700, 700))) - heights, start,
+                        x_scale=(0.01, 10, 0.01))
+    return math.degrees(math.atan(abs(fit.x[0] * fit.x[1]) / 4))
+
+
+def collect():
+    commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, capture_output=True, text=True)
+    planned = [(name, seed) for name, (_, seeds) in cases().items() for seed in range(1, seeds + 1)]
+    rows = [measure(name, seed) for name, seed in planned if ensemble_of(name, seed).members[0].is_finished()]
+    return {"commit": commit.stdout.strip() or "unknown", "proportions": PROPORTIONS, "planned": len(planned), "rows": rows}
+
+
+def of_case(results, name, column):
+    return np.array([row[column] for row in results["rows"] if row["case"] == name], dtype=float)
+
+
+def scatter(ax, results, named, column, unit, colour="C0"):
+    """Seeds as dots, their mean with its standard error beside; named: (x, case)."""
+    means = []
+    for x, name in named:
+        values = unit * of_case(results, name, column)
+        if not len(values):
+            continue
+        ax.plot([x] * len(values), values, f"{colour}.", ms=4, alpha=0.6)
+        error = values.std(ddof=1) / math.sqrt(len(values)) if len(values) > 1 else 0
+        means.append((x, values.mean(), error))
+    x, mean, error = zip(*means, strict=True)
+    ax.errorbar(x, mean, yerr=error, fmt=f"{colour}o-", ms=5, lw=1, capsize=3)
+
+
+def plot_pair(results, name, named, label, log):
+    figure, axes = plt.subplots(1, 2, figsize=(11, 4), layout="constrained")
+    for ax, (column, text, unit) in zip(axes, COLUMNS, strict=True):
+        scatter(ax, results, named, column, unit)
+        ax.set(xlabel=label, ylabel=text, xscale="log" if log else "linear")
+        if log:
+            ax.set_xticks([x for x, _ in named], [f"{x:g}" for x, _ in named])
+            ax.minorticks_off()
+        ax.grid(alpha=0.3)
+    axes[0].axhspan(*BAND, color="0.9", zorder=0, label="experiments of the source")
+    axes[0].legend()
+    figure.savefig(FOLDER / name, dpi=130)
+    plt.close(figure)
+
+
+def plot_spring(results):
+    figure, axes = plt.subplots(1, 3, figsize=(13, 3.8), layout="constrained")
+    for name, colour, text in (("triangles_40", "C0", "with tangential spring"), ("no_spring", "C3", "without")):
+        row = next((row for row in results["rows"] if row["case"] == name and row["seed"] == 1), None)
+        if row is None:
+            continue
+        axes[0].semilogy(row["time"], np.maximum(row["moving"], 1e-12), colour, lw=1, label=text)
+        axes[1].plot(row["time"], 1e3 * np.array(row["heights"]), colour, lw=1)
+        axes[2].plot(row["angle_times"], row["angles"], f"{colour}.-", lw=1)
+    after = PROPORTIONS["end"] - 0.3
+    axes[0].set(ylabel="kinetic energy [J]")
+    axes[1].set(ylabel="mean height of the rocks [mm]", xlim=(after, None), ylim=(0, 30))
+    axes[2].set(ylabel="angle of repose [degrees]", ylim=(0, None))
+    axes[0].legend()
+    for ax in axes:
+        ax.set_xlabel("time [s]")
+        ax.grid(alpha=0.3)
+    figure.savefig(FOLDER / "spring.png", dpi=130)
+    plt.close(figure)
+
+
+def shown(values, digits):
+    text = f"{values.mean():.{digits}f}"
+    if len(values) > 1:
+        text += f" ± {values.std(ddof=1) / math.sqrt(len(values)):.{digits}f} ({values.std(ddof=1):.{digits}f})"
+    return text
+
+
+def table(results):
+    lines = ["| case | runs | angle [degrees] | flow energy [mJ] | peak [mJ] | mean height [mm] | coordination number | "
+             "kinetic energy at the end [J] | fit residual [mm] | error of the balance | deepest [mm] | processor time [s] |",
+             "|" + "---|" * 12]
+    for name in dict.fromkeys(row["case"] for row in results["rows"]):
+        column = {key: of_case(results, name, key) for key in ("angle", "flow", "peak", "height", "coordination", "rest",
+                                                               "residual", "balance", "deepest", "seconds")}
+        lines.append(f"| {name.replace('_', ' ')} | {len(column['angle'])} | {shown(column['angle'], 1)} | "
+                     f"{shown(1e3 * column['flow'], 2)} | {shown(1e3 * column['peak'], 1)} | {shown(1e3 * column['height'], 1)} | "
+                     f"{shown(column['coordination'], 2)} | {column['rest'].max():.0e} | {1e3 * column['residual'].mean():.1f} | "
+                     f"{column['balance'].max():.0e} | {1e3 * column['deepest'].max():.1f} | {time_of(column['seconds'])} |")
+    return "\n".join(lines)
+
+
+def time_of(seconds):
+    """Mean over the runs that were not broken off."""
+    known = seconds[~np.isnan(seconds)]
+    return f"{known.mean():.0f}" if len(known) else ""
+
+
+def make_page(results):
+    plot_pair(results, "resolution.png", [(n, f"triangles_{n}") for n in TRIANGLES], "triangles of a rock", True)
+    named = sorted([(mu, f"friction_{mu:g}") for mu in FRICTION] + [(0.39, "triangles_40")])
+    plot_pair(results, "friction.png", named, "friction between rocks", False)
+    plot_spring(results)
+    timed = [row["seconds"] for row in results["rows"] if row["seconds"] is not None]
+    seconds = np.mean(timed) * results["planned"] if timed else math.nan
+    texts = {"table": table(results), "minutes": f"{seconds / 60:.0f}", "half": f"{seconds / 120:.0f}",
+             "runs": str(len(results["rows"])), "commit": results["commit"], "planned": str(results["planned"]), "timed": str(len(timed)),
+             "mass": f"{1e3 * results['rows'][0]['mass']:.0f}",
+             "measured": f"{min(row['measured_step'] for row in results['rows']):.1e}"}
+    texts |= {key: f"{value:g}" for key, value in results["proportions"].items()}
+    page = (FOLDER / "page.md").read_text()
+    for name, text in texts.items():
+        page = page.replace("{{" + name + "}}", text)
+    (FOLDER / "README.md").write_text(page)
+
+
+if __name__ == "__main__":
+    if sys.argv[1:] not in ([], ["--keep"], ["--finished"]):
+        raise SystemExit(__doc__)
+    if not sys.argv[1:]:
+        compute()
+    if "--keep" not in sys.argv:
+        RESULTS.write_text(json.dumps(collect()) + "\n")
+    make_page(json.loads(RESULTS.read_text()))

@@ -85,10 +85,11 @@ typedef struct scree_bench_bed
     const char *shape; ///< "cube", "schoenhardt", "rock" or "sphere"
     int64_t triangles; ///< of a rock
     int64_t particles;
-    double pairs_per_particle; ///< that touch, at most, in its inside
-    double depth;              ///< wanted mean indentation over the bounding diameter
-    const char *order;         ///< of the particles
-    const char *solver;        ///< keys of section solver, or ""
+    double pairs_per_particle;    ///< that touch, at most, in its inside
+    double depth;                 ///< wanted mean indentation over the bounding diameter
+    const char *order;            ///< of the particles
+    const char *solver;           ///< keys of section solver, or ""
+    const scree_simulation *like; ///< takes the places of the bodies from this bed of the same bodies; NULL: made
 } scree_bench_bed;
 
 /// Owns the scene and the simulation of it.

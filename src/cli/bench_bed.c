@@ -335,6 +335,16 @@ static scree_status make_scene(scree_bench_bodies *bodies, const scree_bench_bed
 /// Volume of the bodies over that of the tile at the start, somewhat above what they jam at.
 static double first_density(const char *shape) { return strcmp(shape, "cube") == 0 ? 0.8 : 0.62; }
 
+/// The bodies to the places that those of another bed have.
+static scree_status copy_places(scree_simulation *s, const scree_simulation *from, scree_report *report)
+{
+    const size_t num = (size_t)s->particles.num_particles;
+    memcpy(s->particles.position, from->particles.position, num * sizeof *s->particles.position);
+    memcpy(s->particles.orientation, from->particles.orientation, num * sizeof *s->particles.orientation);
+    s->contacts.num_contacts = 0;
+    return scree_simulation_restored(s, report);
+}
+
 scree_status scree_bench_bed_create(scree_bench_bodies *bodies, const scree_bench_bed *bed, scree_report *report)
 {
     *bodies = (scree_bench_bodies){0};
@@ -342,6 +352,12 @@ scree_status scree_bench_bed_create(scree_bench_bodies *bodies, const scree_benc
     tile t = {0};
     const int64_t needed = (int64_t)ceil(cbrt((double)bed->particles) - 1e-9);
     const int64_t row = needed < 4 ? 4 : needed < TILE ? needed : TILE;
+    if (status == SCREE_OK && bed->like != NULL)
+    {
+        status = copy_places(bodies->simulation, bed->like, report);
+        if (status != SCREE_OK) scree_bench_bed_destroy(bodies);
+        return status;
+    }
     if (status == SCREE_OK)
         status = create_tile(&t, bodies->simulation->shape_views, row,
                              bodies->simulation->particle_shapes[0].properties.volume / first_density(bed->shape),

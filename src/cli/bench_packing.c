@@ -7,26 +7,27 @@
 #include <stdlib.h>
 #include <string.h>
 
-/// One bed, measured: its case, or NULL.
-static json_t *measure_bed(const scree_bench *bench, const scree_bench_bed *bed, const char *name)
+/// Steps of a bed, measured: its case, or NULL.
+static json_t *measure_bed(const scree_bench *bench, const scree_bench_bodies *bodies, const scree_bench_bed *bed,
+                           const char *name)
 {
-    scree_bench_bodies bodies;
-    if (scree_bench_bed_create(&bodies, bed, bench->report) != SCREE_OK) return NULL;
-    json_t *measured = scree_bench_steps(bodies.simulation, bench->request, bench->report);
-    if (measured != NULL)
-    {
-        json_object_set_new(measured, "name", json_string(name));
-        json_object_set_new(measured, "mean_depth", json_real(bodies.depth));
-        json_object_set_new(measured, "order", json_string(bed->order));
-    }
-    scree_bench_bed_destroy(&bodies);
+    json_t *measured = scree_bench_steps(bodies->simulation, bench->request, bench->report);
+    if (measured == NULL) return NULL;
+    json_object_set_new(measured, "name", json_string(name));
+    json_object_set_new(measured, "mean_depth", json_real(bodies->depth));
+    json_object_set_new(measured, "order", json_string(bed->order));
     return measured;
 }
 
 static scree_status add_bed(scree_bench *bench, const scree_bench_bed *bed, const char *name)
 {
-    json_t *measured = measure_bed(bench, bed, name);
-    return measured != NULL ? scree_bench_add(bench, measured) : SCREE_INVALID_INPUT;
+    scree_bench_bodies bodies;
+    scree_status status = scree_bench_bed_create(&bodies, bed, bench->report);
+    if (status != SCREE_OK) return status;
+    json_t *measured = measure_bed(bench, &bodies, bed, name);
+    status = measured != NULL ? scree_bench_add(bench, measured) : SCREE_UNSTABLE;
+    scree_bench_bed_destroy(&bodies);
+    return status;
 }
 
 /// A piece of avoided work and the key that switches it off.
@@ -85,6 +86,7 @@ static scree_status add_savings(scree_bench *bench, scree_bench_bed bed, const c
         char text[96];
         snprintf(text, sizeof text, "%s %s", name, savings[k].name);
         bed.solver = savings[k].solver;
+        bed.like = reference.simulation;
         scree_bench_bodies without;
         status = scree_bench_bed_create(&without, &bed, bench->report);
         if (status != SCREE_OK) break;
@@ -100,8 +102,9 @@ static scree_status add_savings(scree_bench *bench, scree_bench_bed bed, const c
 scree_status scree_bench_packing(scree_bench *bench)
 {
     static const scree_bench_bed beds[] = {
-        {"cube", 12, 0, 4, 1e-3, "", ""}, {"schoenhardt", 8, 0, 4, 1e-3, "", ""}, {"rock", 28, 0, 4, 1e-3, "", ""},
-        {"rock", 40, 0, 4, 1e-3, "", ""}, {"sphere", 0, 0, 4, 5e-3, "", ""},
+        {"cube", 12, 0, 4, 1e-3, "", "", NULL},  {"schoenhardt", 8, 0, 4, 1e-3, "", "", NULL},
+        {"rock", 28, 0, 4, 1e-3, "", "", NULL},  {"rock", 40, 0, 4, 1e-3, "", "", NULL},
+        {"sphere", 0, 0, 4, 5e-3, "", "", NULL},
     };
     const scree_bench_request *request = bench->request;
     scree_bench_set_columns(bench, scree_bench_step_columns, scree_bench_num_step_columns);
@@ -130,7 +133,7 @@ scree_status scree_bench_packing(scree_bench *bench)
 scree_status scree_bench_spheres(scree_bench *bench)
 {
     // five contacts each
-    const scree_bench_bed bed = {"sphere", 0, bench->request->particles, 2.5, 5e-3, bench->request->order, ""};
+    const scree_bench_bed bed = {"sphere", 0, bench->request->particles, 2.5, 5e-3, bench->request->order, "", NULL};
     scree_bench_set_columns(bench, scree_bench_step_columns, scree_bench_num_step_columns);
     scree_status status = add_bed(bench, &bed, "sphere");
     if (status == SCREE_OK && bench->request->shows_savings) status = add_savings(bench, bed, "sphere");
@@ -165,7 +168,7 @@ static void print_scaling(const scree_bench *bench)
 
 scree_status scree_bench_scaling(scree_bench *bench)
 {
-    scree_bench_bed bed = {"schoenhardt", 8, 0, 4, 1e-3, bench->request->order, ""};
+    scree_bench_bed bed = {"schoenhardt", 8, 0, 4, 1e-3, bench->request->order, "", NULL};
     if (bench->request->shape != NULL) bed.shape = bench->request->shape;
     if (bench->request->depth > 0) bed.depth = bench->request->depth;
     bed.triangles = bench->request->triangles > 0 ? bench->request->triangles : 40;
@@ -177,11 +180,15 @@ scree_status scree_bench_scaling(scree_bench *bench)
     for (; num <= bench->request->particles && status == SCREE_OK; num *= 10)
     {
         bed.particles = num;
+        scree_bench_bodies bodies;
+        status = scree_bench_bed_create(&bodies, &bed, bench->report);
         for (int k = 0; k < 2 && status == SCREE_OK; ++k)
         {
             omp_set_num_threads(threads[k]);
-            status = add_bed(bench, &bed, bed.shape);
+            json_t *measured = measure_bed(bench, &bodies, &bed, bed.shape);
+            status = measured != NULL ? scree_bench_add(bench, measured) : SCREE_UNSTABLE;
         }
+        scree_bench_bed_destroy(&bodies);
     }
     if (status == SCREE_OK && !bench->is_quiet) print_scaling(bench);
     return status;

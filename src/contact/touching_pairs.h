@@ -4,6 +4,7 @@
 #ifndef SCREE_TOUCHING_PAIRS_H
 #define SCREE_TOUCHING_PAIRS_H
 
+#include <stddef.h>
 #include <stdint.h>
 
 enum

@@ -9,21 +9,21 @@
 /// Most of the separable pairs of a dense bed need two to five.
 #define SCREE_SEPARATION_MAX_ROUNDS 8
 
-/// Vertex of a shape that lies farthest along a direction of its own frame.
+/// Vertex of a shape that lies farthest along a direction of its own frame, the first of several. Which vertex is
+/// farther than those before it cannot be foreseen: no branch.
 SCREE_FN scree_vec3 scree_support_point(const scree_shape_view *shape, scree_vec3 direction)
 {
-    scree_vec3 best = shape->vertices[0];
-    scree_real most = scree_vec3_dot(direction, best);
-    for (int32_t v = 1; v < shape->num_vertices; ++v)
+    const scree_vec3 *vertices = shape->vertices;
+    const int32_t num_vertices = shape->num_vertices;
+    int32_t best = 0;
+    scree_real most = scree_vec3_dot(direction, vertices[0]);
+    for (int32_t v = 1; v < num_vertices; ++v)
     {
-        const scree_real along = scree_vec3_dot(direction, shape->vertices[v]);
-        if (along > most)
-        {
-            most = along;
-            best = shape->vertices[v];
-        }
+        const scree_real along = scree_vec3_dot(direction, vertices[v]);
+        best = along > most ? v : best;
+        most = scree_max(most, along);
     }
-    return best;
+    return vertices[best];
 }
 
 /// Support point in world axes, relative to the position of the body.

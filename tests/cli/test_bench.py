@@ -123,6 +123,13 @@ def test_tables_and_baseline(tmp_path):
 
 
 
+def test_committed_baseline_is_readable():
+    baseline = json.loads((ROOT / "benchmarks/baseline.json").read_text())
+    assert {"overlap", "broad-phase", "packing", "spheres", "rig", "scaling"} == set(baseline)
+    for name, result in baseline.items():
+        assert result["bench"] == name and result["cases"] and result["machine"]["processor"]
+
+
 @pytest.mark.parametrize(
     "arguments, message",
     [

@@ -1,0 +1,243 @@
+"""Where the time of a step goes, and how it grows: makes README.md and its plots.
+
+Usage: python run.py [--keep]
+  --keep   plots and page again from results.json, without computing anything
+QUICK=1 in the environment takes smaller beds and shorter runs.
+"""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+FOLDER = Path(__file__).resolve().parent
+ROOT = FOLDER.parent.parent
+BUILD = Path(os.environ.get("SCREE_BUILD_DIR", ROOT / "build" / "release"))
+RESULTS = FOLDER / "results.json"
+QUICK = os.environ.get("QUICK") == "1"
+STAGES = ["search", "contacts", "history", "forces", "gather", "work"]
+# Bilock (2020): one V100; bytes and seconds of a step
+THESIS_MEMORY = {1e6: 4.0e9, 1e7: 20.6e9}
+SCENE = ROOT / "scenes" / "gravity_packing.yaml"
+# a fall of centimetres instead of a metre, so that half of the run is a packing
+FALL = ["particles.fall.region.min=[-0.471,-0.471,0.005]", "particles.fall.spacing=1.05",
+        f"particles.fall.count={64 if QUICK else 96}", "time.step=2e-5"]
+FALL_STEPS = 5000 if QUICK else 20000
+SKINS = ["0.02", "0.1", "0.3", "auto"]
+
+
+def run(command, **options):
+    print("+", " ".join(str(part) for part in command), flush=True)
+    return subprocess.run([str(part) for part in command], check=True, cwd=ROOT, **options)
+
+
+def bench(name, *options, program="scree"):
+    result = run([BUILD / program, "bench", name, *options, "--json", "-"], capture_output=True, text=True,
+                 env=dict(os.environ, OMP_WAIT_POLICY="passive"))
+    return json.loads(result.stdout)
+
+
+def scene(*overrides, program="scree", parts=30):
+    options = ["--scene", SCENE, "--steps", FALL_STEPS, "--parts", parts]
+    for override in [*FALL, *overrides]:
+        options += ["--set", override]
+    return bench("scene", *options, program=program)
+
+
+def compute():
+    if "SCREE_BUILD_DIR" not in os.environ:
+        run(["cmake", "--build", BUILD, "--target", "scree_program", "scree_single_program"], capture_output=True)
+    bed = ["--particles", 1000 if QUICK else 2000, "--repetitions", 3 if QUICK else 4]
+    single = dict(program="scree_single")
+    results = {"quick": QUICK, "packing": bench("packing", *bed), "fall": scene()}
+    results["machine"] = results["packing"]["machine"]
+    results["savings"] = bench("packing", "--shape", "schoenhardt", "--savings", *bed)
+    results["sphere_savings"] = bench("spheres", "--savings", *bed)
+    # the two precisions in turn
+    pairs = [(bench("packing", "--shape", shape, *bed), bench("packing", "--shape", shape, *bed, **single))
+             for shape in ("cube", "schoenhardt", "sphere")]
+    results["precision"] = [[double["cases"][0], float_["cases"][0]] for double, float_ in pairs]
+    results["skin"] = {skin: scene(f"solver.skin={skin}", parts=1)["cases"][0] for skin in SKINS}
+    results["rig"] = bench("rig", "--steps", 2500 if QUICK else 14000, "--particles", 50)
+    largest = 10000 if QUICK else 100000
+    results["scaling"] = bench("scaling", "--particles", largest, "--repetitions", 3, "--steps", 5,
+                               "--search-every", 5, "--threads", 2)
+    # one process for each, for the peak is that of the process
+    sizes = [3000, 10000] if QUICK else [10000, 100000, 1000000]
+    results["memory"] = [bench("packing", "--shape", "schoenhardt", "--particles", n, "--steps", 2, "--repetitions", 1,
+                               "--search-every", 2)["cases"][0] for n in sizes]
+    RESULTS.write_text(json.dumps(results, indent=1) + "\n")
+
+
+def save(figure, name, results):
+    figure.suptitle(results["machine"]["processor"] + ", one thread" * (name != "threads.png"), fontsize=8, color="0.4")
+    figure.savefig(FOLDER / name, dpi=110)
+    plt.close(figure)
+
+
+def plot_fall(results):
+    cases = [c for c in results["fall"]["cases"] if c["mean_contacts"] > 1]
+    time = np.array([c["time"] for c in cases])
+    steps = np.array([c["steps"] for c in cases])
+    contacts = np.array([c["mean_contacts"] for c in cases])
+    figure, axes = plt.subplots(1, 2, figsize=(11, 4.2), layout="constrained")
+    for k, stage in enumerate(STAGES):
+        spent = 1e6 * np.array([c["stages"][stage]["core_seconds"] for c in cases]) / steps
+        axes[0].semilogy(time, np.maximum(spent, 1e-2), color=f"C{k}", label=stage)
+        axes[1].loglog(contacts, np.maximum(spent, 1e-2), ".", color=f"C{k}", label=stage)
+    line = np.array([contacts.min(), contacts.max()])
+    axes[1].loglog(line, 4 * line, "k:", lw=0.8, label="4 µs for each touching pair")
+    axes[0].set(xlabel="simulated time [s]", ylabel="time of a step [µs]")
+    axes[1].set(xlabel="touching pairs", ylabel="time of a step [µs]")
+    for ax in axes:
+        ax.grid(alpha=0.3)
+        ax.legend(fontsize=7)
+    save(figure, "fall.png", results)
+
+
+def exponent(cases, value):
+    if not all(value(c) > 0 for c in cases):
+        return float("nan")  # a run so short that nothing touches
+    x = np.log([c["triangles"] for c in cases])
+    return np.polyfit(x, np.log([value(c) for c in cases]), 1)[0]
+
+
+def plot_rig(results):
+    cases = results["rig"]["cases"]
+    triangles = np.array([c["triangles"] for c in cases], float)
+    whole = np.array([c["core_seconds"] for c in cases])
+    figure, axes = plt.subplots(1, 2, figsize=(11, 4.2), layout="constrained")
+    axes[0].loglog(triangles, whole, "o-", label="whole run")
+    axes[0].loglog(triangles, [c["stages"]["contacts"]["core_seconds"] for c in cases], "s-", label="contacts")
+    axes[0].loglog(triangles, whole[0] * np.sqrt(triangles / triangles[0]), "k:", lw=0.8, label="square root")
+    axes[0].loglog(triangles, whole[0] * triangles / triangles[0], "k--", lw=0.8, label="linear, as the thesis")
+    axes[1].loglog(triangles, [c["core_us_per_contact_step"] for c in cases], "o-")
+    axes[0].set(xlabel="triangles of a rock", ylabel="processor time [s]")
+    axes[1].set(xlabel="triangles of a rock", ylabel="time for a touching pair and step [µs]")
+    axes[0].legend(fontsize=8)
+    for ax in axes:
+        ax.grid(alpha=0.3, which="both")
+    save(figure, "rig.png", results)
+
+
+def plot_memory(results):
+    cases = results["memory"]
+    figure, ax = plt.subplots(figsize=(6, 4.2), layout="constrained")
+    ax.loglog([c["particles"] for c in cases], [c["bytes"]["peak_resident"] / 1e9 for c in cases], "o-",
+              label="scree, double precision, peak of the process")
+    ax.loglog(list(THESIS_MEMORY), [b / 1e9 for b in THESIS_MEMORY.values()], "s--", label="Bilock (2020), a V100")
+    ax.set(xlabel="particles", ylabel="memory [GB]")
+    ax.grid(alpha=0.3, which="both")
+    ax.legend(fontsize=8)
+    save(figure, "memory.png", results)
+
+
+def plot_threads(results):
+    figure, ax = plt.subplots(figsize=(6, 4.2), layout="constrained")
+    for threads, style in ((1, "o-"), (2, "s-")):
+        cases = [c for c in results["scaling"]["cases"] if c["threads"] == threads]
+        ax.semilogx([c["particles"] for c in cases], [1e6 * c["wall_seconds"] / c["contacts"] for c in cases], style,
+                    label=f"{threads} thread{'s' * (threads > 1)}")
+    ax.set(xlabel="particles", ylabel="elapsed time for a touching pair and step [µs]", ylim=(0, None))
+    ax.grid(alpha=0.3)
+    ax.legend()
+    save(figure, "threads.png", results)
+
+
+def table(head, rows):
+    text = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
+    return "\n".join(text + ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows])
+
+
+def packing_table(results):
+    cases = results["packing"]["cases"]
+    sphere = cases[-1]["core_us_per_contact"]
+    rows = [[c["name"], f"{c['pairs_per_particle']:.1f}", f"{c['contacts_per_particle']:.2f}", f"{c['mean_depth']:.1e}",
+             f"**{c['core_us_per_contact']:.2f}**",
+             *(f"{c['stages'][s]['core_us_per_contact']:.3f}" for s in STAGES), f"{c['rest_us_per_contact']:.3f}",
+             f"{c['core_us_per_contact'] / sphere:.1f}", f"{100 * c['spread']:.0f} %"] for c in cases]
+    return table(["bed", "candidates", "touching pairs", "depth/size", "µs for each", *STAGES, "rest", "over a sphere",
+                  "spread"], rows)
+
+
+def savings_table(results):
+    rows = [[c["name"], f"{c['times_as_long']:.2f}", f"{100 * c['spread']:.0f} %"]
+            for key in ("savings", "sphere_savings") for c in results[key]["cases"] if "times_as_long" in c]
+    return table(["without", "times as long", "spread of the ratio"], rows)
+
+
+def skin_table(results):
+    best = min(c["core_seconds"] for c in results["skin"].values())
+    rows = [[skin, c["searches"], f"{c['pairs']}", f"{c['core_seconds'] / best:.2f}",
+             f"{100 * c['stages']['search']['core_seconds'] / c['core_seconds']:.0f} %"]
+            for skin, c in results["skin"].items()]
+    return table(["skin", "searches", "candidates at the end", "time over the least", "share of searches"], rows)
+
+
+def precision_table(results):
+    rows = [[double["name"], f"{double['core_us_per_contact']:.2f}", f"{single['core_us_per_contact']:.2f}",
+             f"{single['core_us_per_contact'] / double['core_us_per_contact']:.2f}",
+             f"{double['bytes']['per_contact']}, {single['bytes']['per_contact']}"]
+            for double, single in results["precision"]]
+    return table(["bed", "double [µs]", "single [µs]", "ratio", "bytes of a contact"], rows)
+
+
+def memory_table(results):
+    rows = [[f"{c['particles']:,}".replace(",", " "), f"{c['pairs']:,}".replace(",", " "),
+             f"{c['contacts']:,}".replace(",", " "), f"{c['bytes']['peak_resident'] / 1e9:.2f}",
+             f"{c['bytes']['peak_resident'] / c['particles']:.0f}"] for c in results["memory"]]
+    per = results["memory"][-1]["bytes"]
+    return table(["particles", "candidates", "touching pairs", "peak [GB]", "bytes per particle"], rows) + (
+        f"\n\nBy the plan {per['per_particle']} bytes for a particle, {per['per_pair']} for a candidate pair, "
+        f"{per['per_contact']} for a contact, with history.")
+
+
+def threads_text(results):
+    cases = results["scaling"]["cases"]
+    alone = [c for c in cases if c["threads"] == 1]
+    ratios = [f"{a['wall_seconds'] / b['wall_seconds']:.2f} ({a['particles']} particles)"
+              for a, b in zip(cases[::2], cases[1::2], strict=True)]
+    per = [c["core_us_per_contact"] for c in alone]
+    sizes = f"On one thread the time for a touching pair differs by a factor of {max(per) / min(per):.2f} between the sizes."
+    return (f"Two threads are {', '.join(ratios)} times as fast as one. " + sizes * (len(alone) > 1))
+
+
+def make_page(results):
+    for plot in (plot_fall, plot_rig, plot_memory, plot_threads):
+        plot(results)
+    machine = results["machine"]
+    rig = results["rig"]["cases"]
+    texts = {
+        "machine": f"{machine['processor']} (virtual, {machine['processors']} processors, other work beside it), "
+                   f"{machine['compiler']}" + (", QUICK=1: small beds, short runs" if results["quick"] else "") + results.get("remark", ""),
+        "packing": packing_table(results),
+        "savings": savings_table(results),
+        "skin": skin_table(results),
+        "precision": precision_table(results),
+        "memory": memory_table(results),
+        "threads": threads_text(results),
+        "rig_whole": f"{exponent(rig, lambda c: c['core_seconds']):.2f}",
+        "rig_pair": f"{exponent(rig, lambda c: c['core_us_per_contact_step']):.2f}",
+        "rig_particles": str(rig[0]["particles"]),
+        "rig_steps": str(rig[0]["steps"]),
+    }
+    page = (FOLDER / "page.md").read_text()
+    for name, text in texts.items():
+        page = page.replace("{{" + name + "}}", text)
+    assert "{{" not in page
+    (FOLDER / "README.md").write_text(page)
+
+
+if __name__ == "__main__":
+    if sys.argv[1:] not in ([], ["--keep"]):
+        raise SystemExit(__doc__)
+    if not sys.argv[1:]:
+        compute()
+    make_page(json.loads(RESULTS.read_text()))

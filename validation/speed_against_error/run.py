@@ -233,7 +233,7 @@ def draw(ax, results, panel):
         for row in chosen:
             ax.annotate(row["value"], (row["error"], row["time"]), xytext=(-5, -3) if axis == "skin" else (5, 3),
                         ha="right" if axis == "skin" else "left", textcoords="offset points", fontsize=7)
-    if is_mean and noise(results, panel) == noise(results, panel):
+    if is_mean and not math.isnan(noise(results, panel)):
         ax.axvspan(-noise(results, panel), noise(results, panel), color="0.9", zorder=0)
     ax.set(xscale="linear" if is_mean else "log", yscale="log", xlabel=f"error of {MEASURES[panel][3]}")
     ax.yaxis.set_major_locator(FixedLocator([0.25, 0.5, 1, 2, 4, 8, 16]))
@@ -269,7 +269,12 @@ def number(row):
         return "0 (finest)"
     if row["uncertainty"] == 0:
         return f"{row['error']:.1e}"
-    return f"{row['error']:+.3f} ± {row['uncertainty']:.3f}" if row["runs"] > 1 or row["as_base"] else f"{row['error']:+.3f} (one start)"
+    is_known = not math.isnan(row["uncertainty"])
+    return f"{row['error']:+.3f} " + (f"± {row['uncertainty']:.3f}" if is_known else "(one start)")
+
+
+def percent(value):
+    return "unknown from one start" if math.isnan(value) else f"{100 * value:.1f} %"
 
 
 def make_page(results):
@@ -281,7 +286,7 @@ def make_page(results):
     texts = {"collisions": table(results, ["collisions"]), "packing": table(results, ["packing_early", "packing", "packing_contacts"]),
              "flow": table(results, ["flow"]), "minutes": f"{seconds / 60:.0f}", "program": results["program"],
              "early": f"{EARLY:g}"} | {
-        f"noise_{panel}": f"{100 * noise(results, panel):.1f} %" for panel in ("packing", "packing_contacts", "flow")}
+        f"noise_{panel}": percent(noise(results, panel)) for panel in ("packing", "packing_contacts", "flow")}
     texts |= {f"seeds_{scene}": str(max(run["seed"] for run in results[scene]["runs"])) for scene in MAKERS}
     texts |= {f"step_{scene}": f"{results[scene]['critical']:.2e}" for scene in MAKERS}
     page = (FOLDER / "page.md").read_text()

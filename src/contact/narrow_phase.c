@@ -6,6 +6,7 @@
 #include "core/scan.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 /// The pairs of one kind, in ascending order.
 typedef struct pair_batch
@@ -176,6 +177,7 @@ static scree_mesh_pairs_args mesh_args(const search *s)
 {
     const struct scree_narrow_phase_buffers *b = s->narrow_phase->buffers;
     scree_mesh_pairs_args args;
+    memset(&args, 0, sizeof args); // the gaps between its members too: a launch passes them on
     args.bodies = s->bodies;
     args.pairs = s->pairs;
     args.batch = b->batches[SCREE_PAIR_MESH_MESH].pairs;
@@ -231,6 +233,7 @@ static void find_overlaps(const search *s)
     const scree_mesh_pairs_args args = mesh_args(s);
     scree_mesh_apart_launch_on(device, args, num);
     scree_overlap_pairs_args overlaps;
+    memset(&overlaps, 0, sizeof overlaps);
     overlaps.meshes = args;
     overlaps.slices = b->pool.slices;
     overlaps.options = s->narrow_phase->options;

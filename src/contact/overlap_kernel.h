@@ -306,6 +306,8 @@ SCREE_FN int32_t scree_overlap_team_compute(const scree_team *team, const scree_
 {
     bool used_fallback;
     const scree_overlap_status status = scree_overlap_find(team, pair, options, slice, &used_fallback);
+    // all have read the sums, which those of patches take the place of
+    scree_team_sync(team);
     if (!scree_team_leads(team)) return 1;
     results[0] = scree_overlap_nothing(status);
     if (status != SCREE_OVERLAP_TOUCHING) return 1;

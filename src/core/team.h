@@ -10,7 +10,7 @@
 
 /// A function with registers and stack of its own on a GPU: what one lane does, or what is seldom done.
 #if defined(__CUDACC__) && !defined(CUDA_ON_CPU_CUDA_RUNTIME_H)
-#define SCREE_FN_APART static __host__ __device__ __noinline__
+#define SCREE_FN_APART static __host__ __device__ __noinline__ __attribute__((unused))
 #else
 #define SCREE_FN_APART SCREE_FN
 #endif

@@ -27,6 +27,7 @@ typedef struct scree_bench_request
     int64_t search_every; ///< [steps] between searches in a bed
     int64_t threads;
     int64_t parts;      ///< of a run
+    int32_t device;     ///< number of a GPU that the steps of beds are done on; -1: the CPU
     bool shows_savings; ///< each piece of avoided work is switched off in turn
 } scree_bench_request;
 

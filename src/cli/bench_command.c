@@ -2,6 +2,7 @@
 /// scree bench: where the time goes, as tables and as JSON.
 #include "cli/bench.h"
 #include "cli/commands.h"
+#include "cli/device_argument.h"
 #include "cli/mesh_argument.h"
 #include "io/nearest_name.h"
 
@@ -37,6 +38,9 @@ static const char usage[] =
     "  --set PATH=VALUE   scene: replaces a value of it; can be repeated\n"
     "  --parts N          scene: rows of the table, default 10\n"
     "  --threads N        default 1; scaling: compares one with N, default all\n"
+    "  --device WHERE     packing, spheres: cpu, the default, or cuda or cuda:N; then all times are elapsed ones, and "
+    "those\n"
+    "                     of the stages are what the processor waits in them\n"
     "  --json FILE        writes the result; \"-\" for standard output, then without tables\n"
     "  --baseline FILE    prints ratios to a result that was written before, one of --json or several by name\n"
     "  --help             this text\n"
@@ -118,6 +122,8 @@ static bool parse_valued(scree_bench_request *request, const char *option, const
         if (scree_parse_number(value, &request->depth) && request->depth >= 1e-5 && request->depth <= 0.1) return true;
         return refuse("--depth must be a number from 1e-5 to 0.1, not ", value);
     }
+    if (strcmp(option, "--device") == 0)
+        return scree_parse_device(value, &request->device) || refuse("--device needs cpu, cuda or cuda:N, not ", value);
     if (strcmp(option, "--shape") == 0) request->shape = value;
     else if (strcmp(option, "--order") == 0) request->order = value;
     else if (strcmp(option, "--scene") == 0) request->scene = value;
@@ -158,6 +164,9 @@ static bool parse_options(scree_bench_request *request, int argc, char **argv)
             ++i;
         }
     }
+    const bool has_beds = strcmp(request->name, "packing") == 0 || strcmp(request->name, "spheres") == 0;
+    if (request->device >= 0 && (!has_beds || request->shows_savings))
+        return refuse("a GPU is measured in packing and spheres, without --savings, not in ", request->name);
     return true;
 }
 
@@ -221,7 +230,8 @@ int scree_bench_command(int argc, char **argv)
                                    .search_every = 20,
                                    .parts = 10,
                                    .overrides = calloc((size_t)argc, sizeof(const char *)),
-                                   .threads = 1};
+                                   .threads = 1,
+                                   .device = -1};
     int exit_code = SCREE_EXIT_USAGE;
     if (request.overrides == NULL) exit_code = SCREE_EXIT_FAILED;
     else if (parse_options(&request, argc, argv)) exit_code = run_benchmark(kind, &request);

@@ -1,6 +1,7 @@
 /// \file bench_packing.c
 /// Whole steps of dense beds at rest: scree bench packing, spheres and scaling.
 #include "cli/bench.h"
+#include "cli/device_argument.h"
 
 #include <omp.h>
 #include <stdio.h>
@@ -21,12 +22,20 @@ static json_t *measure_bed(const scree_bench *bench, const scree_bench_bodies *b
 
 static scree_status add_bed(scree_bench *bench, const scree_bench_bed *bed, const char *name)
 {
-    scree_bench_bodies bodies;
-    scree_status status = scree_bench_bed_create(&bodies, bed, bench->report);
+    scree_device *device;
+    scree_status status = scree_open_device(bench->request->device, &device, bench->report);
     if (status != SCREE_OK) return status;
-    json_t *measured = measure_bed(bench, &bodies, bed, name);
-    status = measured != NULL ? scree_bench_add(bench, measured) : SCREE_UNSTABLE;
-    scree_bench_bed_destroy(&bodies);
+    scree_bench_bodies bodies;
+    status = scree_bench_bed_create(&bodies, bed, bench->report);
+    if (status == SCREE_OK)
+    {
+        if (device != NULL) status = scree_simulation_use_device(bodies.simulation, device, bench->report);
+        json_t *measured = status == SCREE_OK ? measure_bed(bench, &bodies, bed, name) : NULL;
+        if (measured != NULL) status = scree_bench_add(bench, measured);
+        else if (status == SCREE_OK) status = SCREE_UNSTABLE;
+        scree_bench_bed_destroy(&bodies);
+    }
+    scree_device_close(device);
     return status;
 }
 

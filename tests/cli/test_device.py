@@ -1,0 +1,121 @@
+"""scree run --device cuda, on the emulated device of tests/cuda_on_cpu: the results of the CPU, and what happens on machines
+with faults.
+
+SCREE_BUILD_DIR holds the program (scree) and the one with the emulated device (scree_emulated).
+"""
+
+import json
+import os
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(os.environ.get("SCREE_SOURCE_DIR", Path(__file__).parents[2]))
+BUILD = Path(os.environ.get("SCREE_BUILD_DIR", ROOT / "build/release")).resolve()
+EMULATED = BUILD / "scree_emulated"
+pytestmark = pytest.mark.skipif(not EMULATED.exists(), reason=f"there is no {EMULATED}")
+
+SCENE = """
+name: on the device
+gravity: [0, 0, -300]
+time: {end: 0.012, step: 2e-5}
+materials: [{name: stone, density: 2500, youngs_modulus: 1e7, poisson_ratio: 0.25}]
+contact_laws: [{materials: [stone, stone], friction_coefficient: 0.4, restitution_coefficient: 0.4}]
+shapes:
+  - {name: rock, source: rock, triangles: 20, seed: 3}
+  - {name: ball, source: sphere, size: 0.01}
+  - {name: floor, source: box, size: [0.2, 0.2, 0.02]}
+particles:
+  - {name: rocks, shape: rock, material: stone, count: 12, seed: 1, size: {distribution: fixed, mean: 0.01},
+     velocity: [0, 0, -3], region: {min: [-0.03, -0.03, 0.0005], max: [0.03, 0, 0.1]}}
+  - {name: balls, shape: ball, material: stone, count: 12, seed: 1, velocity: [0, 0, -3],
+     region: {min: [-0.03, 0, 0.0005], max: [0.03, 0.03, 0.1]}}
+walls:
+  - {name: floor, shape: floor, material: stone, position: [0, 0, -0.01], motion: {kind: translate, velocity: [0.2, 0, 0]}}
+output: {series: 1e-3, frames: 0, checkpoint: 2e-3}
+"""
+
+
+@pytest.fixture
+def scene(tmp_path):
+    path = tmp_path / "scene.yaml"
+    path.write_text(SCENE)
+    return path
+
+
+def scree(program, *arguments, **machine):
+    """A finished program; machine: settings of the emulated one."""
+    environment = dict(os.environ, OMP_NUM_THREADS="1", **{f"CUDA_ON_CPU_{name}": str(value) for name, value in machine.items()})
+    return subprocess.run([program, *map(str, arguments)], text=True, capture_output=True, timeout=300, env=environment)
+
+
+def run(program, scene, folder, *options, expect=0, **machine):
+    done = scree(program, "run", scene, "-o", folder, "--quiet", *options, **machine)
+    assert done.returncode == expect, done.stdout + done.stderr
+    return done
+
+
+def state_of(folder):
+    summary = json.loads((folder / "summary.json").read_text())
+    assert summary["counters"]["contacts"] > 8
+    return summary["state_hash"], summary["energies"]
+
+
+def test_a_run_on_the_device_is_that_of_the_cpu(scene, tmp_path):
+    run(BUILD / "scree", scene, tmp_path / "cpu")
+    run(EMULATED, scene, tmp_path / "cuda", "--device", "cuda")
+    assert state_of(tmp_path / "cuda") == state_of(tmp_path / "cpu")
+
+
+@pytest.mark.parametrize("machine, words", [
+    ({"DEVICES": 0}, "no NVIDIA GPU"),
+    ({"CAPABILITY": 75}, "compute capability 7.5"),
+    ({"DRIVER": 11000}, "update the driver"),
+    ({"DRIVER": 0}, "no NVIDIA driver"),
+])
+def test_machines_that_cannot_are_refused_before_anything_is_written(scene, tmp_path, machine, words):
+    done = run(EMULATED, scene, tmp_path / "run", "--device", "cuda", expect=1, **machine)
+    assert words in done.stderr and "CPU" in done.stderr
+    assert not (tmp_path / "run" / "checkpoint.h5").exists()
+
+
+def test_numbers_of_devices(scene, tmp_path):
+    done = run(EMULATED, scene, tmp_path / "run", "--device", "cuda:1", expect=1)
+    assert "there is no GPU 1: this machine has 1" in done.stderr
+    done = run(EMULATED, scene, tmp_path / "run", "--device", "cuda:first", expect=2)
+    assert "cuda:first" in done.stderr
+    done = run(BUILD / "scree", scene, tmp_path / "run", "--device", "cuda", expect=1)
+    assert "has no CUDA" in done.stderr
+
+
+def test_a_scene_that_does_not_fit_is_refused_with_what_it_needs(scene, tmp_path):
+    text = SCENE.replace("count: 12, seed: 1, velocity", "count: 9000, seed: 1, velocity")
+    scene.write_text(text.replace("max: [0.03, 0.03, 0.1]", "max: [0.03, 0.03, 90]"))
+    done = run(EMULATED, scene, tmp_path / "run", "--device", "cuda", expect=1, MEMORY=20_000_000)
+    assert "has 20 MB of free memory, the scene needs about" in done.stderr and "fewer particles" in done.stderr
+    assert not (tmp_path / "run" / "checkpoint.h5").exists()
+
+
+def test_beds_are_measured_on_the_device(tmp_path):
+    here, there = tmp_path / "cpu.json", tmp_path / "cuda.json"
+    for path, device in ((here, "cpu"), (there, "cuda")):
+        done = scree(EMULATED, "bench", "packing", "--shape", "cube", "--particles", 30, "--steps", 2, "--repetitions", 1,
+                     "--device", device, "--json", path)
+        assert done.returncode == 0, done.stderr
+    case, other = (json.loads(path.read_text())["cases"][0] for path in (here, there))
+    assert case["contacts"] == other["contacts"] > 0 and case["pairs"] == other["pairs"]
+    assert other["core_seconds"] == other["wall_seconds"] > 0
+    done = scree(EMULATED, "bench", "rig", "--device", "cuda")
+    assert done.returncode == 2 and "packing and spheres" in done.stderr
+
+
+def test_after_a_kernel_fault_the_run_goes_on_from_its_checkpoint(scene, tmp_path):
+    run(BUILD / "scree", scene, tmp_path / "whole")
+    folder = tmp_path / "broken"
+    # each step has some thirty launches, and the first checkpoint comes after a hundred steps
+    done = run(EMULATED, scene, folder, "--device", "cuda", expect=1, FAULT_AT=12000)
+    assert "GPU" in done.stderr and "--restart" in done.stdout + done.stderr, done.stdout + done.stderr
+    assert (folder / "checkpoint.h5").exists() and not (folder / "checkpoint.h5.tmp").exists()
+    run(BUILD / "scree", scene, folder, "--restart")
+    assert state_of(folder)[0] == state_of(tmp_path / "whole")[0]

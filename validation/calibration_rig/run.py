@@ -35,7 +35,7 @@ RUNS = ROOT / "runs" / ("calibration_rig_quick" if QUICK else "calibration_rig")
 PROPORTIONS = {"count": 50, "scale": 0.75, "depth": 0.026, "opening": 0.3, "end": 1.05, "step": 2.6e-5}
 TRIANGLES = (10, 20, 40, 60, 100, 150)
 FRICTION = (0.1, 0.2, 0.6, 0.8)
-SEEDS, FEW_SEEDS = 3, 1
+SEEDS, FEW_SEEDS = 11, 4
 if QUICK:
     PROPORTIONS |= {"count": 25, "end": 0.9}
     TRIANGLES, FRICTION, SEEDS = (10, 40, 150), (0.1, 0.8), 1

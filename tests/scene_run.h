@@ -30,6 +30,25 @@ static inline void scene_run_start_with(scene_run *run, const char *text, const 
 
 static inline void scene_run_start(scene_run *run, const char *text) { scene_run_start_with(run, text, NULL, 0); }
 
+/// All messages of a scene in one text, which is overwritten by the next call.
+static inline const char *scene_run_messages(const char *text)
+{
+    static char all[8192];
+    scree_scene_file file = {0};
+    scree_report report = {0};
+    scree_simulation *simulation = NULL;
+    all[0] = '\0';
+    scree_status status = scree_scene_parse(&file, text, "test.yaml", NULL, 0, &report);
+    if (status == SCREE_OK) status = scree_simulation_create(&simulation, &file.scene, file.folder, &report);
+    SCREE_CHECK((status == SCREE_OK) == (scree_report_num_faults(&report) == 0));
+    for (int k = 0; k < report.num_messages; ++k)
+        snprintf(all + strlen(all), sizeof all - strlen(all), "%s\n", report.messages[k]);
+    scree_simulation_destroy(simulation);
+    scree_scene_close(&file);
+    scree_report_clear(&report);
+    return all;
+}
+
 /// Steps until `time` [s] is reached.
 static inline void scene_run_until(scene_run *run, double time)
 {

@@ -16,25 +16,6 @@
     "     {position: [0.03, 0, 0], radius: 0.015}, {position: [0, 0.02, 0], radius: 0.01}]}\n"
 #define ONE "particles: [{name: one, shape: trio, material: stone, bodies: [{position: [0, 0, 0.1]}]}]\n"
 
-/// All messages of a scene in one text, which is overwritten by the next call.
-static const char *messages_of(const char *text)
-{
-    static char all[8192];
-    scree_scene_file file = {0};
-    scree_report report = {0};
-    scree_simulation *simulation = NULL;
-    all[0] = '\0';
-    scree_status status = scree_scene_parse(&file, text, "test.yaml", NULL, 0, &report);
-    if (status == SCREE_OK) status = scree_simulation_create(&simulation, &file.scene, file.folder, &report);
-    SCREE_CHECK((status == SCREE_OK) == (scree_report_num_faults(&report) == 0));
-    for (int k = 0; k < report.num_messages; ++k)
-        snprintf(all + strlen(all), sizeof all - strlen(all), "%s\n", report.messages[k]);
-    scree_simulation_destroy(simulation);
-    scree_scene_close(&file);
-    scree_report_clear(&report);
-    return all;
-}
-
 static void test_keys_reach_their_fields(void)
 {
     scene_run run;
@@ -136,7 +117,7 @@ static void test_faults(void)
     {
         char text[2048];
         snprintf(text, sizeof text, HEAD "  - {name: trio, %s}\n" ONE, cases[k].shape);
-        SCREE_CHECK_CONTAINS(messages_of(text), cases[k].message);
+        SCREE_CHECK_CONTAINS(scene_run_messages(text), cases[k].message);
     }
     static char many[20000];
     int length = snprintf(many, sizeof many, HEAD "  - {name: trio, source: clump, spheres: [");
@@ -144,12 +125,13 @@ static void test_faults(void)
         length +=
             snprintf(many + length, sizeof many - (size_t)length, "{position: [%g, 0, 0], radius: 0.1},", 0.1 * k);
     snprintf(many + length, sizeof many - (size_t)length, "]}\n" ONE);
-    SCREE_CHECK_CONTAINS(messages_of(many), "spheres of shapes.1 has 257 items");
+    SCREE_CHECK_CONTAINS(scene_run_messages(many), "spheres of shapes.1 has 257 items");
     SCREE_CHECK_CONTAINS(
-        messages_of("name: wall\ntime: {end: 1}\n"
-                    "materials: [{name: stone, density: 2500, youngs_modulus: 1e7, poisson_ratio: 0.25}]\n"
-                    "contact_laws: [{materials: [stone, stone], friction_coefficient: 0.4, damping_ratio: 0.3}]\n"
-                    "walls: [{name: floor, shape: trio, material: stone}]\nshapes:\n" TRIO ONE),
+        scene_run_messages(
+            "name: wall\ntime: {end: 1}\n"
+            "materials: [{name: stone, density: 2500, youngs_modulus: 1e7, poisson_ratio: 0.25}]\n"
+            "contact_laws: [{materials: [stone, stone], friction_coefficient: 0.4, damping_ratio: 0.3}]\n"
+            "walls: [{name: floor, shape: trio, material: stone}]\nshapes:\n" TRIO ONE),
         "shape of walls.0 is \"trio\", a clump, but walls are meshes; give it a shape of its own");
 }
 
@@ -184,16 +166,19 @@ static void test_filled_meshes(void)
         }
     }
     SCREE_CHECK_CONTAINS(
-        messages_of(HEAD TRIO "  - {name: other, source: clump, fill: {shape: trio, spheres: 4}}\n" ONE),
+        scene_run_messages(HEAD TRIO "  - {name: other, source: clump, fill: {shape: trio, spheres: 4}}\n" ONE),
         "fill.shape of shapes.2 is \"trio\", which has no mesh to fill");
-    SCREE_CHECK_CONTAINS(messages_of(HEAD "  - {name: trio, source: clump, fill: {shape: flor, spheres: 4}}\n" ONE),
-                         "fill.shape of shapes.1 is \"flor\"");
-    SCREE_CHECK_CONTAINS(messages_of(HEAD "  - {name: trio, source: clump, fill: {shape: floor, spheres: 999}}\n" ONE),
-                         "spheres of shapes.1.fill is 999; it must be an integer in [1, 256]");
-    SCREE_CHECK_CONTAINS(messages_of(HEAD "  - {name: trio, source: clump, fill: {shape: floor}, spheres: [{position: "
-                                          "[0, 0, 0], radius: 0.1}]}\n" ONE),
-                         "spheres of shapes.1 are given, but so is fill; remove one of them");
-    SCREE_CHECK_CONTAINS(messages_of(HEAD "  - {name: trio, source: box, fill: {shape: floor}}\n" ONE),
+    SCREE_CHECK_CONTAINS(
+        scene_run_messages(HEAD "  - {name: trio, source: clump, fill: {shape: flor, spheres: 4}}\n" ONE),
+        "fill.shape of shapes.1 is \"flor\"");
+    SCREE_CHECK_CONTAINS(
+        scene_run_messages(HEAD "  - {name: trio, source: clump, fill: {shape: floor, spheres: 999}}\n" ONE),
+        "spheres of shapes.1.fill is 999; it must be an integer in [1, 256]");
+    SCREE_CHECK_CONTAINS(
+        scene_run_messages(HEAD "  - {name: trio, source: clump, fill: {shape: floor}, spheres: [{position: "
+                                "[0, 0, 0], radius: 0.1}]}\n" ONE),
+        "spheres of shapes.1 are given, but so is fill; remove one of them");
+    SCREE_CHECK_CONTAINS(scene_run_messages(HEAD "  - {name: trio, source: box, fill: {shape: floor}}\n" ONE),
                          "fill of shapes.1 is not used: the source is not clump");
 }
 

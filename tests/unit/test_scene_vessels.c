@@ -7,25 +7,6 @@
     "contact_laws: [{materials: [stone, stone], friction_coefficient: 0.4, damping_ratio: 0.3}]\n" \
     "particles: [{name: one, shape: cube, material: stone, bodies: [{position: [0, 0, 0]}]}]\n"
 
-/// All messages of a scene in one text, which is overwritten by the next call.
-static const char *messages_of(const char *text)
-{
-    static char all[8192];
-    scree_scene_file file = {0};
-    scree_report report = {0};
-    scree_simulation *simulation = NULL;
-    all[0] = '\0';
-    scree_status status = scree_scene_parse(&file, text, "test.yaml", NULL, 0, &report);
-    if (status == SCREE_OK) status = scree_simulation_create(&simulation, &file.scene, file.folder, &report);
-    SCREE_CHECK((status == SCREE_OK) == (scree_report_num_faults(&report) == 0));
-    for (int k = 0; k < report.num_messages; ++k)
-        snprintf(all + strlen(all), sizeof all - strlen(all), "%s\n", report.messages[k]);
-    scree_simulation_destroy(simulation);
-    scree_scene_close(&file);
-    scree_report_clear(&report);
-    return all;
-}
-
 static void test_keys_reach_their_fields(void)
 {
     scene_run run;
@@ -75,7 +56,7 @@ static void test_faults(void)
                  HEAD "shapes:\n  - {name: odd, %s}\n  - {name: cube, source: box, size: 0.1}\n"
                       "walls: [{name: odd, shape: odd, material: stone, position: [0, 0, -3]}]\n",
                  cases[k].shape);
-        SCREE_CHECK_CONTAINS(messages_of(text), cases[k].message);
+        SCREE_CHECK_CONTAINS(scene_run_messages(text), cases[k].message);
     }
 }
 

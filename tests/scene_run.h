@@ -34,18 +34,18 @@ static inline void scene_run_start(scene_run *run, const char *text) { scene_run
 static inline const char *scene_run_messages(const char *text)
 {
     static char all[8192];
-    scree_scene_file file = {0};
-    scree_report report = {0};
-    scree_simulation *simulation = NULL;
+    scene_run run;
+    memset(&run, 0, sizeof run);
     all[0] = '\0';
-    scree_status status = scree_scene_parse(&file, text, "test.yaml", NULL, 0, &report);
-    if (status == SCREE_OK) status = scree_simulation_create(&simulation, &file.scene, file.folder, &report);
-    SCREE_CHECK((status == SCREE_OK) == (scree_report_num_faults(&report) == 0));
-    for (int k = 0; k < report.num_messages; ++k)
-        snprintf(all + strlen(all), sizeof all - strlen(all), "%s\n", report.messages[k]);
-    scree_simulation_destroy(simulation);
-    scree_scene_close(&file);
-    scree_report_clear(&report);
+    scree_status status = scree_scene_parse(&run.file, text, "test.yaml", NULL, 0, &run.report);
+    if (status == SCREE_OK)
+        status = scree_simulation_create(&run.simulation, &run.file.scene, run.file.folder, &run.report);
+    SCREE_CHECK((status == SCREE_OK) == (scree_report_num_faults(&run.report) == 0));
+    for (int k = 0; k < run.report.num_messages; ++k)
+        snprintf(all + strlen(all), sizeof all - strlen(all), "%s\n", run.report.messages[k]);
+    scree_simulation_destroy(run.simulation);
+    scree_scene_close(&run.file);
+    scree_report_clear(&run.report);
     return all;
 }
 

@@ -1,11 +1,16 @@
 #!/usr/bin/env python3
 """What a step should cost on a GPU, from the arrays that the kernels read and write: tables for docs/theory/gpu_cost.md.
 
-  tools/gpu_cost.py          prints the tables
-  tools/gpu_cost.py --write  puts them into the page
+  tools/gpu_cost.py                  prints the tables
+  tools/gpu_cost.py --write          puts them into the page
+  tools/gpu_cost.py --achieved FILE  of a bed that scree bench packing (or spheres) --device cuda --json FILE has measured: the
+                                     bytes of each stage over its time, beside a copy within the same GPU
+  tools/gpu_cost.py --fits FILE N    does a bed like it of N particles fit? If not, a sentence that says so, and exit code 3
 """
 import argparse
+import json
 import re
+import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -13,7 +18,7 @@ PAGE = ROOT / "docs" / "theory" / "gpu_cost.md"
 
 # numbers of reals and of other bytes of each type
 TYPES = {"real": (1, 0), "vec3": (3, 0), "quat": (4, 0), "pose": (8, 0), "int32": (0, 4), "int64": (0, 8), "uint8": (0, 1),
-         "pair": (0, 8), "memory": (4, 8)}
+         "pair": (0, 8), "memory": (4, 8), "sphere": (4, 0)}
 SECTOR = 32  # bytes, the least that a GPU moves
 
 # Kernels of the steady step of polyhedra, one launch each. `own`: arrays at the index itself, each byte once. `far`: arrays
@@ -55,6 +60,25 @@ KERNELS = [
           near="pose:pose velocity:vec3 angular_velocity:vec3 inverse_mass:real inertia:vec3 material:int32",
           far="pose:pose velocity:vec3 angular_velocity:vec3 inverse_mass:real inertia:vec3 material:int32"), 456),
 ]
+
+# In a bed of spheres these take the place of the kernels of meshes, and contacts act in points: nothing has moments.
+SPHERE_KERNELS = [
+    ("scree_place_spheres", "particle", "src/contact/sphere_pairs_kernel.h", dict(own="shape:int32 pose:pose spheres:sphere"), None),
+    ("scree_sphere_sphere_count", "pair", "src/contact/sphere_pairs_kernel.h",
+     dict(own="batch:int32 pairs:pair first_of_pair:int64", near="spheres:sphere", far="spheres:sphere"), None),
+    ("scree_sphere_sphere_write", "pair", "src/contact/sphere_pairs_kernel.h", dict(own="batch:int32 first_of_pair:int64"), None),
+    ("scree_sphere_sphere_write, per contact", "contact", "src/contact/sphere_pairs_kernel.h",
+     dict(own="pairs:pair bodies:pair patch:int32 volume:real indentation:real normal:vec3 arm:vec3", near="spheres:sphere", far="spheres:sphere"),
+     None),
+]
+NOT_IN_POINTS = {"radius", "moment", "torsion", "rolling_moment", "is_turning"}
+
+# which kernels a stage of scree bench is made of; a search comes every some steps and is not in the model
+STAGES = {"predict": ("scree_predict",), "travel": ("scree_travel",),
+          "contacts": ("scree_mesh_apart", "scree_overlap_pairs", "scan of contacts", "scree_mesh_write", "scree_place_spheres",
+                       "scree_sphere_sphere_count", "scree_sphere_sphere_write"),
+          "history": ("scree_history_match",), "forces": ("scree_contact_force",), "gather": ("scree_gather",),
+          "correct": ("scree_correct",), "work": ("scree_work",)}
 
 # the packing that is predicted
 COUNTS = {"particle": 1e6, "pair": 8e6, "contact": 4e6, "side": 8e6}
@@ -135,6 +159,63 @@ def table_of_times():
     return "\n".join(lines)
 
 
+def without_moments(arrays):
+    """What is left of them where contacts act in points."""
+    return {where: " ".join(f"{name}:{kind}*{num}" for name, kind, num in items(text) if name not in NOT_IN_POINTS)
+            for where, text in arrays.items()}
+
+
+def stage_bytes(case, precision):
+    """Bytes that a step of a measured bed moves in each stage, by the model."""
+    num = {"particle": case["particles"], "pair": case["pairs"], "contact": case["contacts"], "side": 2 * case["contacts"]}
+    kernels = KERNELS
+    if case["name"] == "sphere":
+        kernels = SPHERE_KERNELS + [(name, per, source, without_moments(arrays), count) for name, per, source, arrays, count in KERNELS
+                                    if not name.startswith(("scree_mesh", "scree_overlap"))]
+    return {stage: sum(bytes_of(arrays, precision, num[per] / num["particle"]) * num[per] for name, per, _, arrays, _ in kernels
+                       if name.split(",")[0] in names) for stage, names in STAGES.items()}
+
+
+def table_achieved(result):
+    """The stages of each case of scree bench: bytes of the model over measured times, and the share of a copy's rate."""
+    lines = []
+    precision = result["machine"]["precision"]
+    for case in result["cases"]:
+        copy = case["device"]["copy_bytes_per_second"]
+        moved = stage_bytes(case, precision)
+        lines += [f"{case['name']}, {case['particles']} particles, {case['pairs']} pairs, {case['contacts']} contacts, {precision} precision: "
+                  f"{1e3 * case['wall_seconds']:.3f} ms a step; a copy within {case['device']['name']} moves {copy / 1e9:.1f} GB/s", "",
+                  "| stage | ms a step | MB of the model | GB/s | of the copy |", "|---|---|---|---|---|"]
+        for stage, times in case["stages"].items():
+            seconds = times["wall_seconds"]
+            if stage not in moved or seconds <= 0:
+                lines.append(f"| {stage} | {1e3 * seconds:.3f} |  |  |  |")
+                continue
+            rate = moved[stage] / seconds
+            share = f"{100 * rate / copy:.0f} %" if copy > 0 else "?"
+            lines.append(f"| {stage} | {1e3 * seconds:.3f} | {moved[stage] / 1e6:.1f} | {rate / 1e9:.1f} | {share} |")
+        lines.append("")
+    return "\n".join(lines)
+
+
+def free_on_the_host():
+    """[bytes] that programs can have, or None."""
+    found = re.search(r"^MemAvailable: +(\d+) kB", Path("/proc/meminfo").read_text(), re.MULTILINE) if Path("/proc/meminfo").exists() else None
+    return 1024 * int(found[1]) if found else None
+
+
+def what_lacks(result, particles, host=None):
+    """A sentence why a bed of so many particles would not fit, by what one like it took; None if it would."""
+    case = result["cases"][0]
+    times = particles / case["particles"]
+    for place, taken, free in (("the GPU", case["device"]["scene_bytes"], case["device"]["free_bytes"]),
+                               ("this machine", case["bytes"]["peak_resident"], host)):
+        if free is not None and times * taken > free:
+            return (f"{case['name']}, {particles} particles, {result['machine']['precision']} precision: left out, {place} has {free / 1e9:.1f} GB of free "
+                    f"memory and the bed would take about {times * taken / 1e9:.1f} GB")
+    return None
+
+
 def with_tables(page):
     for name, table in (("kernels", table_of_kernels()), ("times", table_of_times())):
         page, num = re.subn(rf"(<!-- {name} -->\n).*?(<!-- end -->)", lambda m: m[1] + table + "\n" + m[2], page, flags=re.DOTALL)
@@ -146,8 +227,18 @@ def with_tables(page):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--write", action="store_true", help="puts the tables into the page")
-    if parser.parse_args().write:
+    parser.add_argument("--achieved", metavar="FILE", type=Path, help="holds a measured bed against the model")
+    parser.add_argument("--fits", metavar=("FILE", "N"), nargs=2, help="does a bed like this of N particles fit?")
+    asked = parser.parse_args()
+    if asked.write:
         PAGE.write_text(with_tables(PAGE.read_text()))
+    elif asked.achieved:
+        print(table_achieved(json.loads(asked.achieved.read_text())))
+    elif asked.fits:
+        lack = what_lacks(json.loads(Path(asked.fits[0]).read_text()), int(asked.fits[1]), free_on_the_host())
+        if lack:
+            print(lack)
+            sys.exit(3)
     else:
         print(table_of_kernels(), table_of_times(), sep="\n\n")
 

@@ -77,6 +77,9 @@ double scree_bench_uniform(uint64_t *state);
 
 /// Processor, its threads, compiler, precision.
 json_t *scree_bench_machine(void);
+/// A GPU by itself, to be called while it is not in use: name, free memory, bytes that a copy within it reads and
+/// writes in a second. Those of scree_device_open().
+scree_status scree_bench_device(int32_t number, json_t **described, scree_report *report);
 /// Ratios of the cases to those of a file. SCREE_READ_FAILED, SCREE_INVALID_INPUT.
 scree_status scree_bench_compare(const scree_bench *bench, const char *path);
 

@@ -2,6 +2,7 @@
 /// Whole steps of dense beds at rest: scree bench packing, spheres and scaling.
 #include "cli/bench.h"
 #include "cli/device_argument.h"
+#include "dynamics/on_device.h"
 
 #include <omp.h>
 #include <stdio.h>
@@ -20,22 +21,30 @@ static json_t *measure_bed(const scree_bench *bench, const scree_bench_bodies *b
     return measured;
 }
 
+/// The bed to the GPU; what it takes there goes to `machine`, the description of the GPU.
+static scree_status move_bed(scree_bench *bench, scree_simulation *simulation, scree_device *device, json_t *machine)
+{
+    json_object_set_new(machine, "scene_bytes", json_integer(scree_device_memory_of(simulation).total));
+    return scree_simulation_use_device(simulation, device, bench->report);
+}
+
 static scree_status add_bed(scree_bench *bench, const scree_bench_bed *bed, const char *name)
 {
-    scree_device *device;
-    scree_status status = scree_open_device(bench->request->device, &device, bench->report);
-    if (status != SCREE_OK) return status;
-    scree_bench_bodies bodies;
-    status = scree_bench_bed_create(&bodies, bed, bench->report);
-    if (status == SCREE_OK)
-    {
-        if (device != NULL) status = scree_simulation_use_device(bodies.simulation, device, bench->report);
-        json_t *measured = status == SCREE_OK ? measure_bed(bench, &bodies, bed, name) : NULL;
-        if (measured != NULL) status = scree_bench_add(bench, measured);
-        else if (status == SCREE_OK) status = SCREE_UNSTABLE;
-        scree_bench_bed_destroy(&bodies);
-    }
+    const int32_t number = bench->request->device;
+    json_t *machine = NULL;
+    scree_device *device = NULL;
+    scree_status status = number >= 0 ? scree_bench_device(number, &machine, bench->report) : SCREE_OK;
+    if (status == SCREE_OK) status = scree_open_device(number, &device, bench->report);
+    scree_bench_bodies bodies = {0};
+    if (status == SCREE_OK) status = scree_bench_bed_create(&bodies, bed, bench->report);
+    if (status == SCREE_OK && device != NULL) status = move_bed(bench, bodies.simulation, device, machine);
+    json_t *measured = status == SCREE_OK ? measure_bed(bench, &bodies, bed, name) : NULL;
+    if (measured != NULL && machine != NULL) json_object_set(measured, "device", machine);
+    if (measured != NULL) status = scree_bench_add(bench, measured);
+    else if (status == SCREE_OK) status = SCREE_UNSTABLE;
+    scree_bench_bed_destroy(&bodies);
     scree_device_close(device);
+    json_decref(machine);
     return status;
 }
 

@@ -360,7 +360,8 @@ static void test_ended()
             where.keep(ended.sums, num_blocks);
             double sum = 0;
             for (const scree_work_sums &part : where.read(ended.sums, num_blocks)) sum += (double)part.hysteresis;
-            SCREE_CHECK(left > 0 && fabs(sum - left) <= 1e-12 * left);
+            // terms of one sign, each addition rounded once
+            SCREE_CHECK(left > 0 && fabs(sum - left) <= (double)n * (double)SCREE_REAL_EPSILON * left);
 
             const scree_indentations_args args = {where.copy(c->indentation, n), n, where.zeros<scree_maximum>(1)};
             LAUNCH_ON(where, scree_indentations, args, num_blocks);

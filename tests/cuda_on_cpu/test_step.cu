@@ -102,15 +102,19 @@ static std::string patches()
            "walls:\n  - {name: floor, shape: floor, material: steel, position: [0, 0, -0.01]}\n";
 }
 
+#ifdef CUDA_ON_CPU_ADDRESS
+#define SCREE_TEST_ARENA_BYTES 0
+#else
+#define SCREE_TEST_ARENA_BYTES (1 << 20)
+#endif
+
 static scree_device *open_device(int32_t block)
 {
     scree_device_def def = scree_default_device_def();
     def.block = block;
-#ifdef CUDA_ON_CPU_ADDRESS
-    def.arena_bytes = 0; // so that the sanitizer sees the ends of the arrays
-#else
-    def.arena_bytes = 1 << 20;
-#endif
+    // 0 where a sanitizer looks for the ends of the arrays
+    const char *arena = std::getenv("SCREE_TEST_ARENA");
+    def.arena_bytes = arena != nullptr ? std::strtoll(arena, nullptr, 10) : SCREE_TEST_ARENA_BYTES;
     scree_device *device = nullptr;
     scree_report report = {};
     if (scree_device_open(&device, &def, &report) == SCREE_OK) return device;

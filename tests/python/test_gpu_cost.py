@@ -12,13 +12,14 @@ sys.path.insert(0, str(ROOT / "tools"))
 import gpu_cost  # noqa: E402
 
 FROM_SOURCES = [kernel for kernel in gpu_cost.KERNELS if kernel[2]]
+OF_SPHERES = gpu_cost.SPHERE_KERNELS
 
 
 def named(kernel):
     return {name for text in kernel[3].values() for name, _, _ in gpu_cost.items(text)}
 
 
-@pytest.mark.parametrize("kernel", FROM_SOURCES, ids=[kernel[0] for kernel in FROM_SOURCES])
+@pytest.mark.parametrize("kernel", FROM_SOURCES + OF_SPHERES, ids=[kernel[0] for kernel in FROM_SOURCES + OF_SPHERES])
 def test_arrays_of_the_model_are_in_the_source(kernel):
     words = set(re.findall(r"\w+", (ROOT / kernel[2]).read_text()))
     assert kernel[0].split(",")[0] + "_at" in words
@@ -36,6 +37,49 @@ def test_arrays_of_the_source_are_in_the_model(source):
     elsewhere = {"boxes", "centres", "radii", "pairs", "patch", "arm", "old_patch", "old_arm", "old_bodies", "sums",
                  "area_vector", "torque_vector", "slices", "laws"}
     assert used - known <= elsewhere, f"{source} also uses {sorted(used - known - elsewhere)}: put them into tools/gpu_cost.py"
+
+
+def test_contacts_in_points_have_no_moments():
+    header = (ROOT / "src" / "contact" / "contact_list.h").read_text()
+    untouched = set(re.findall(r"\*(\w+); +///< \*", header))
+    assert {"area_vector", "torque_vector"} < untouched
+    assert gpu_cost.NOT_IN_POINTS == untouched - {"area_vector", "torque_vector"}
+
+
+def measured(**case):
+    stages = {name: {"wall_seconds": 1e-3} for name in ("predict", "search", "gather", "other")}
+    return {"machine": {"precision": "double"},
+            "cases": [dict({"name": "schoenhardt", "particles": 1000, "pairs": 8000, "contacts": 4000, "wall_seconds": 4e-3, "stages": stages,
+                            "bytes": {"peak_resident": 10_000_000},
+                            "device": {"name": "some GPU", "copy_bytes_per_second": 2e9, "scene_bytes": 1_000_000, "free_bytes": 9_000_000}}, **case)]}
+
+
+def test_achieved_is_bytes_over_time():
+    rows = dict(re.findall(r"^\| (\w+) \| 1.000 \|(.*)\|$", gpu_cost.table_achieved(measured()), re.MULTILINE))
+    # 408 bytes of each of a thousand in a millisecond, a fifth of what a copy moves; gathering by particle and by side of a contact
+    assert rows["predict"].split(" | ") == [" 0.4", "0.4", "20 % "]
+    assert rows["gather"].split(" | ")[0] == f" {(128 * 1000 + 348 * 8000) / 1e6:.1f}"
+    assert not rows["search"].replace("|", "").strip() and not rows["other"].replace("|", "").strip()
+
+
+def test_every_kernel_of_the_model_is_in_one_stage():
+    for kernels in (gpu_cost.KERNELS, OF_SPHERES):
+        for kernel in kernels:
+            assert sum(kernel[0].split(",")[0] in names for names in gpu_cost.STAGES.values()) == 1, kernel[0]
+
+
+def test_spheres_move_less_than_meshes():
+    mesh, sphere = (gpu_cost.stage_bytes(measured(name=name)["cases"][0], "double") for name in ("schoenhardt", "sphere"))
+    # a contact of points: neither moments nor radius; two rolling moments and two torsions of the history, and the marks
+    assert mesh["forces"] - sphere["forces"] == 4000 * (8 + 24 + 2 * 8 + 2 * 24 + 1)
+    assert mesh["gather"] - sphere["gather"] == 8000 * 48 and mesh["predict"] == sphere["predict"]
+    assert sphere["contacts"] < mesh["contacts"]
+
+
+def test_what_does_not_fit_is_told():
+    assert gpu_cost.what_lacks(measured(), 9000, 90_000_000) is None
+    assert "9001 particles" in gpu_cost.what_lacks(measured(), 9001) and "the GPU has 0.0 GB" in gpu_cost.what_lacks(measured(), 9001)
+    assert "this machine has" in gpu_cost.what_lacks(measured(), 9000, 89_000_000)
 
 
 def test_page_has_the_tables():

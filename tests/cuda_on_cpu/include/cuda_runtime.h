@@ -242,10 +242,16 @@ cudaError_t cudaLaunchKernelEx(const cudaLaunchConfig_t *config, void (*kernel)(
 {
     static_assert((std::is_trivially_copyable<Parameters>::value && ...), "a kernel's parameters are copied as bytes");
     const char *name = cuda_on_cpu::name_of(reinterpret_cast<const void *>(kernel));
-    const std::tuple<Parameters...> copies(std::forward<Arguments>(arguments)...);
-    std::apply([name](const Parameters &...copy)
-               { (cuda_on_cpu::refuse_host_addresses(name, &copy, sizeof copy), ...); },
-               copies);
+    std::tuple<Parameters...> copies(std::forward<Arguments>(arguments)...);
+    std::apply(
+        [name](Parameters &...copy)
+        {
+#if __has_builtin(__builtin_clear_padding)
+            (__builtin_clear_padding(&copy), ...); // where anything may have been left
+#endif
+            (cuda_on_cpu::refuse_host_addresses(name, &copy, sizeof copy), ...);
+        },
+        copies);
     const cuda_on_cpu::launch_shape shape = {config->gridDim, config->blockDim, config->dynamicSmemBytes};
     return static_cast<cudaError_t>(cuda_on_cpu::launch(name, shape, [kernel, copies] { std::apply(kernel, copies); }));
 }

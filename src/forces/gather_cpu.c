@@ -1,83 +1,127 @@
 /// \file gather_cpu.c
-/// Forces on particles on the CPU: the sums of gather_kernel.h, in two steps for a block of particles. The first walks
-/// over the rows, writes down the contacts and asks for their memory; which of the candidate pairs touch cannot be
-/// foreseen, so it has no branch on that. The second adds up.
+/// Forces on particles on the CPU: the sums of gather_kernel.h without its rows. The contacts are sorted by (i, j), so
+/// whoever takes one after the other and adds its force to both bodies adds to each in the order of its row. What a
+/// contact adds is computed in groups of lanes (lanes.h).
+///
+/// A thread has a range of particles and takes the contacts whose first body is one of them. The contacts of a particle
+/// with particles of lower ranges come first in its row; the few that have such are summed along their rows.
+#include "core/lanes.h"
 #include "forces/forces.h"
+
+#include <omp.h>
 
 SCREE_DEFINE_LAUNCH_ON(scree_gather)
 
-enum
+/// What a group of contacts adds to the sums of its first and its second bodies.
+typedef struct scree_gather_group
 {
-    BLOCK_PARTICLES = 32,
-    MAX_ENDS = 1024
-};
+    int32_t i[SCREE_LANES], j[SCREE_LANES];
+    scree_lanes_vec3 position_i, position_j, arm, normal_force, tangential_force;
+    scree_lanes_vec3 moment; ///< zero where all contacts act in points
+    scree_lanes_vec3 force, torque_i, torque_j;
+    scree_real unused[SCREE_LANES];
+} scree_gather_group;
 
-/// The contacts of a block of particles.
-typedef struct scree_gather_block
+SCREE_LANES_FUNCTION static void forces_of_lanes(scree_gather_group *restrict g, const scree_gather_args *restrict a,
+                                                 int64_t first)
 {
-    int64_t contacts[MAX_ENDS + 1];
-    int32_t end[BLOCK_PARTICLES]; ///< of the contacts of each particle
-} scree_gather_block;
-
-static void ask_for_contact(const scree_contact_list *list, int64_t c)
-{
-    __builtin_prefetch(list->normal_force + c);
-    __builtin_prefetch(list->tangential_force + c);
-    __builtin_prefetch(list->arm + c);
-    __builtin_prefetch(list->bodies + c);
+    const scree_contact_list *list = &a->contacts;
+    for (int l = 0; l < SCREE_LANES; ++l)
+    {
+        g->i[l] = list->bodies[first + l].i;
+        g->j[l] = list->bodies[first + l].j;
+    }
+    scree_lanes_gather(&g->position_i, g->unused, a->pose, sizeof *a->pose, g->i);
+    scree_lanes_gather(&g->position_j, g->unused, a->pose, sizeof *a->pose, g->j);
+    scree_lanes_load(&g->arm, list->arm + first);
+    scree_lanes_load(&g->normal_force, list->normal_force + first);
+    scree_lanes_load(&g->tangential_force, list->tangential_force + first);
+    if (!list->acts_in_points) scree_lanes_load(&g->moment, list->moment + first);
+    for (int l = 0; l < SCREE_LANES; ++l)
+    {
+        const scree_vec3 arm = scree_lanes_get(&g->arm, l), moment = scree_lanes_get(&g->moment, l);
+        const scree_vec3 point = scree_vec3_add(scree_lanes_get(&g->position_i, l), arm);
+        const scree_vec3 arm_j = scree_vec3_sub(point, scree_lanes_get(&g->position_j, l));
+        const scree_vec3 force =
+            scree_vec3_add(scree_lanes_get(&g->normal_force, l), scree_lanes_get(&g->tangential_force, l));
+        scree_lanes_set(&g->force, l, force);
+        scree_lanes_set(&g->torque_i, l, scree_vec3_add(scree_vec3_cross(arm, force), moment));
+        scree_lanes_set(&g->torque_j, l, scree_vec3_sub(scree_vec3_cross(arm_j, scree_vec3_negate(force)), moment));
+    }
 }
 
-/// Contacts of particle i, from the place `num` on; returns the place after them, beyond MAX_ENDS if there is no room.
-static int32_t collect(scree_gather_block *block, const scree_gather_args *a, int64_t i, int32_t num)
+/// The particles of a thread, and the first of their contacts with higher bodies.
+typedef struct scree_gather_range
 {
-    const int64_t begin = a->row_begin[i], end = a->row_begin[i + 1];
-    if (num + (end - begin) > MAX_ENDS) return MAX_ENDS + 1;
-    for (int64_t k = begin; k < end; ++k)
-    {
-        const int32_t p = a->row_pairs[k];
-        const int64_t first = a->contacts.first_of_pair[p], count = a->contacts.first_of_pair[p + 1] - first;
-        block->contacts[num] = first;
-        ask_for_contact(&a->contacts, first);
-        num += count > 0;
-        if (count < 2) continue;
-        if (num + count + (end - k) > MAX_ENDS) return MAX_ENDS + 1;
-        for (int64_t c = 1; c < count; ++c) block->contacts[num++] = first + c;
-    }
-    return num;
+    int64_t first, end;
+    int64_t first_contact, end_contact;
+} scree_gather_range;
+
+static void add_to(const scree_gather_args *a, int64_t k, scree_vec3 force, scree_vec3 torque)
+{
+    a->force[k] = scree_vec3_add(a->force[k], force);
+    a->torque[k] = scree_vec3_add(a->torque[k], torque);
 }
 
-/// Particles first .. end - 1, as far as the block has room; returns the next one.
-static int64_t gather_block(scree_gather_block *block, const scree_gather_args *a, int64_t first, int64_t end)
+static void add_group(const scree_gather_group *g, const scree_gather_args *a, const scree_gather_range *range)
 {
-    int64_t i = first;
-    for (int32_t num = 0; i < end; ++i)
+    for (int l = 0; l < SCREE_LANES; ++l)
     {
-        num = collect(block, a, i, num);
-        if (num > MAX_ENDS) break;
-        block->end[i - first] = num;
+        const scree_vec3 force = scree_lanes_get(&g->force, l);
+        add_to(a, g->i[l], force, scree_lanes_get(&g->torque_i, l));
+        // not walls, nor the particles of others
+        if (g->j[l] < range->end) add_to(a, g->j[l], scree_vec3_negate(force), scree_lanes_get(&g->torque_j, l));
     }
-    int32_t n = 0;
-    for (int64_t k = first; k < i; ++k)
+}
+
+/// Adds contact c to both of its bodies.
+static void add_contact(const scree_gather_args *a, const scree_gather_range *range, int64_t c)
+{
+    const scree_candidate_pair pair = a->contacts.bodies[c];
+    scree_gather_contact(a, c, pair.i, a->force + pair.i, a->torque + pair.i);
+    if (pair.j < range->end) scree_gather_contact(a, c, pair.j, a->force + pair.j, a->torque + pair.j);
+}
+
+/// First contact whose first body is i or a higher one.
+static int64_t find_contact(const scree_contact_list *list, int64_t i)
+{
+    int64_t low = 0, high = list->num_contacts;
+    while (low < high)
     {
-        scree_vec3 force = scree_vec3_scale(a->gravity, a->mass[k]);
-        scree_vec3 torque = scree_vec3_zero();
-        for (; n < block->end[k - first]; ++n) scree_gather_contact(a, block->contacts[n], k, &force, &torque);
-        a->force[k] = force;
-        a->torque[k] = torque;
+        const int64_t middle = low + (high - low) / 2;
+        if (list->bodies[middle].i < i) low = middle + 1;
+        else high = middle;
     }
-    if (i > first) return i;
-    scree_gather_at(*a, first); // more contacts than a block holds
-    return first + 1;
+    return low;
+}
+
+static void gather_range(const scree_gather_args *a, int64_t first, int64_t end)
+{
+    const scree_gather_range range = {first, end, find_contact(&a->contacts, first), find_contact(&a->contacts, end)};
+    for (int64_t i = first; i < end; ++i)
+    {
+        a->force[i] = scree_vec3_scale(a->gravity, a->mass[i]);
+        a->torque[i] = scree_vec3_zero();
+    }
+    scree_gather_group g = {0};
+    int64_t c = range.first_contact;
+    for (; c + SCREE_LANES <= range.end_contact; c += SCREE_LANES)
+    {
+        forces_of_lanes(&g, a, c);
+        add_group(&g, a, &range);
+    }
+    for (; c < range.end_contact; ++c) add_contact(a, &range, c);
+    for (int64_t i = first; i < end && range.first_contact > 0; ++i)
+    {
+        const bool has_pairs = a->row_begin[i + 1] > a->row_begin[i];
+        if (has_pairs && a->contacts.first_of_pair[a->row_pairs[a->row_begin[i]]] < range.first_contact)
+            scree_gather_at(*a, i);
+    }
 }
 
 void scree_gather_launch(scree_gather_args args, int64_t num)
 {
-    const int64_t num_blocks = (num + BLOCK_PARTICLES - 1) / BLOCK_PARTICLES;
-#pragma omp parallel for schedule(static) if (num >= SCREE_LAUNCH_MIN)
-    for (int64_t b = 0; b < num_blocks; ++b)
-    {
-        scree_gather_block block;
-        const int64_t end = (b + 1) * BLOCK_PARTICLES < num ? (b + 1) * BLOCK_PARTICLES : num;
-        for (int64_t i = b * BLOCK_PARTICLES; i < end;) i = gather_block(&block, &args, i, end);
-    }
+    const int64_t num_ranges = num < SCREE_LAUNCH_MIN ? 1 : omp_get_max_threads();
+#pragma omp parallel for schedule(static, 1) if (num_ranges > 1)
+    for (int64_t r = 0; r < num_ranges; ++r) gather_range(&args, num * r / num_ranges, num * (r + 1) / num_ranges);
 }

@@ -12,6 +12,7 @@ Exit code: 0 all finished; 1 some failed, which are named; 2 the command line wa
 """
 import argparse
 import csv
+import fcntl
 import hashlib
 import itertools
 import json
@@ -131,10 +132,18 @@ class Ensemble:
         if self.is_stopped:
             return False
         member.folder.mkdir(parents=True, exist_ok=True)
+        with open(member.folder / "in_use", "w") as in_use:
+            # the run holds it too: where this program was killed, the next one waits for what goes on
+            fcntl.flock(in_use, fcntl.LOCK_EX)
+            if member.is_finished() and not replaces:
+                return True
+            return self.run_alone(member, replaces, in_use)
+
+    def run_alone(self, member, replaces, in_use):
         command = self.command(member, replaces)
         (member.folder / "member.json").write_text(json.dumps(self.origin(member), indent=1))
         with open(member.folder / "messages.txt", "w") as messages:
-            process = subprocess.Popen(command, stdout=messages, stderr=messages)
+            process = subprocess.Popen(command, stdout=messages, stderr=messages, pass_fds=[in_use.fileno()])
             with self.lock:
                 self.running.add(process)
             code = process.wait()
@@ -148,7 +157,7 @@ class Ensemble:
         if not replaces:
             self.check_origins()
         todo = [m for m in self.members if replaces or not m.is_finished()]
-        pool = ThreadPoolExecutor(jobs or max(1, (os.cpu_count() or 1) // self.threads))
+        pool = ThreadPoolExecutor(jobs or max(1, len(os.sched_getaffinity(0)) // self.threads))
         try:
             done = list(pool.map(lambda member: self.run_member(member, replaces), todo))
         except KeyboardInterrupt:

@@ -2,7 +2,6 @@
 
 import json
 import math
-import re
 import subprocess
 
 QUARTER_TURN = math.pi / 2  # that the doors make
@@ -49,22 +48,25 @@ def walls_and_shapes(scale, depth, opening):
     return shapes, walls
 
 
-def rock_scale(program, triangles):
-    """Middle size of a rock of so many triangles over that of the rock of 1000 triangles with the same volume."""
-    done = subprocess.run([program, "shape", "--generate", f"rock:{ROCK_SEED}:{triangles}", "--json"], check=True,
-                          capture_output=True, text=True)
-    return float(re.search(r'"middle_size": (\S+),', done.stdout)[1])
+def rock_scale(program, triangles, seed=ROCK_SEED):
+    """Middle size of a rock over that of rock ROCK_SEED of 1000 triangles with the same volume."""
+    sizes = []
+    for rock in (f"rock:{seed}:{triangles}", f"rock:{ROCK_SEED}:1000"):
+        done = subprocess.run([program, "shape", "--generate", rock, "--json"], check=True, capture_output=True, text=True)
+        (told,) = json.loads(done.stdout)
+        sizes.append(told["middle_size"] / told["volume"] ** (1 / 3))
+    return sizes[0] / sizes[1]
 
 
-def rig(size_scale, proportions, *, triangles=40, friction=0.39, side_friction=0.35, spring=1, end=None):
-    """The scene. size_scale: rock_scale() of these triangles, so that the volumes do not depend on them."""
+def rig(size_scale, proportions, *, triangles=40, seed=ROCK_SEED, friction=0.39, side_friction=0.35, spring=1, end=None):
+    """The scene. size_scale: rock_scale() of the rock of this seed, so that the volumes do not depend on its shape."""
     count, scale, depth, opening, step = (proportions[name] for name in ("count", "scale", "depth", "opening", "step"))
     end = end or proportions["end"]
     shapes, walls = walls_and_shapes(scale, depth, opening)
     sizes = {key: value * size_scale for key, value in (("mean", 0.01), ("deviation", 0.005), ("min", 0.005), ("max", 0.01))}
     return {
         "name": f"calibration rig, {triangles} triangles",
-        "time": {"end": end, "step": step},
+        "time": {"end": end, "step": step, "step_fraction": 1},
         "materials": [
             {"name": "rock", "density": 2700, "youngs_modulus": 2e7, "poisson_ratio": 0.25, "shear_modulus": 2e7},
             {"name": "plate", "density": 7850, "youngs_modulus": 1e8, "poisson_ratio": 0.25, "shear_modulus": 2e7},
@@ -78,7 +80,7 @@ def rig(size_scale, proportions, *, triangles=40, friction=0.39, side_friction=0
             {"materials": ["rock", "side"], "friction_coefficient": side_friction, "damping_ratio": 0.382097,
              "tangential_spring": spring},
         ],
-        "shapes": [{"name": "rock", "source": "rock", "triangles": triangles, "seed": ROCK_SEED}, *shapes],
+        "shapes": [{"name": "rock", "source": "rock", "triangles": triangles, "seed": seed}, *shapes],
         "particles": [{"name": "fill", "shape": "rock", "material": "rock", "count": count, "seed": 1,
                        "size": {"distribution": "normal"} | sizes,
                        "region": {"min": [scale * 0.082, 0.001, scale * 0.292622],
@@ -87,8 +89,3 @@ def rig(size_scale, proportions, *, triangles=40, friction=0.39, side_friction=0
         "output": {"series": 0.005, "frames": 0.05, "checkpoint": 0.5},
         "repose": {"measure": True, "from": 0, "to": scale * 0.2, "base": 0, "top": scale * 0.075, "bins": 20},
     }
-
-
-def write(path, content):
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(json.dumps(content, indent=1) + "\n")

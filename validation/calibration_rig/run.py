@@ -6,39 +6,27 @@ Usage: python run.py [--keep | --finished]
 QUICK=1 in the environment takes 25 rocks, one seed and three cases of each kind. A study that was broken off goes on where it stopped.
 """
 
-import json
 import math
-import os
-import subprocess
 import sys
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 from scipy.optimize import least_squares
 
-FOLDER = Path(__file__).resolve().parent
-ROOT = FOLDER.parent.parent
-sys.path[:0] = [str(ROOT / "tools"), str(FOLDER)]
-from ensemble import Ensemble  # noqa: E402
-from rig import rig, rock_scale, write  # noqa: E402
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+from study import PROGRAM, QUICK, Study, in_parallel, plt, table, write_scene  # noqa: E402
+from rig import rig, rock_scale  # noqa: E402
 from run_folder import Run  # noqa: E402
 
-PROGRAM = Path(os.environ.get("SCREE_PROGRAM", ROOT / "build" / "release" / "scree"))
-QUICK = os.environ.get("QUICK") == "1"
-RESULTS = FOLDER / "results.json"
-RUNS = ROOT / "runs" / ("calibration_rig_quick" if QUICK else "calibration_rig")
-PROPORTIONS = {"count": 50, "scale": 0.75, "depth": 0.026, "opening": 0.3, "end": 1.05, "step": 2.6e-5}
+STUDY = Study(__file__)
+PROPORTIONS = {"count": 90, "scale": 0.58, "depth": 0.044, "opening": 0.3, "end": 1.1, "step": "auto"}
 TRIANGLES = (10, 20, 40, 60, 100, 150)
 FRICTION = (0.1, 0.2, 0.6, 0.8)
-SEEDS, FEW_SEEDS = 11, 4
+SEEDS, FEW_SEEDS, SPRING_SEEDS = 11, 4, 3
 if QUICK:
     PROPORTIONS |= {"count": 25, "end": 0.9}
-    TRIANGLES, FRICTION, SEEDS = (10, 40, 150), (0.1, 0.8), 1
+    TRIANGLES, FRICTION = (10, 40, 150), (0.1, 0.8)
+    SEEDS = FEW_SEEDS = SPRING_SEEDS = 1
 BAND = (33, 42)  # of the experiments of the source [degrees]
 COLUMNS = (("angle", "angle of repose [degrees]", 1), ("flow", "flow energy [mJ]", 1e3))
 FLOW = 0.6  # time after the opening of the doors over which the flow energy is taken [s]
@@ -48,37 +36,47 @@ LONG = PROPORTIONS["end"] + 0.5  # end of the two runs that are shown over time 
 def cases():
     """Name: (what differs from 40 triangles and the friction of the source, number of seeds)."""
     all_cases = {f"triangles_{n}": ({"triangles": n}, SEEDS) for n in TRIANGLES}
-    all_cases["no_spring"] = ({"spring": 0, "end": LONG}, 1)
-    all_cases["spring"] = ({"end": LONG}, 1)
+    all_cases |= {name: (changes | {"end": LONG}, SPRING_SEEDS) for name, changes in (("no_spring", {"spring": 0}), ("spring", {}))}
     all_cases |= {f"friction_{mu:g}": ({"friction": mu}, FEW_SEEDS) for mu in FRICTION}
     all_cases["smooth_sides"] = ({"side_friction": 0}, FEW_SEEDS)
     return all_cases
 
 
 def compute():
-    for name, (changes, _) in cases().items():
-        write(RUNS / f"{name}.yaml", rig(rock_scale(PROGRAM, changes.get("triangles", 40)), PROPORTIONS, **changes))
     # seed by seed, so that a study that is broken off has a bit of everything; what has few seeds comes second
     jobs = sorted(((seed, name) for name, (_, seeds) in cases().items() for seed in range(1, seeds + 1)),
-                  key=lambda job: max(job[0], 1 + job[1].startswith("friction") + 2 * job[1].startswith("smooth")))
+                  key=lambda job: job[0] + 2 * (not job[1].startswith("triangles")))
 
     def run(job):
         seed, name = job
-        ensemble = ensemble_of(name, seed)
-        if ensemble.run(jobs=1):
-            raise SystemExit(f"{ensemble.members[0].folder} did not finish; see messages.txt there")
+        STUDY.run(write_scene(scene_path(name, seed), scene(name, seed)), f"{name}/{seed}")
 
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        list(pool.map(run, jobs))
+    in_parallel(run, jobs)
+    return collect()
 
 
-def ensemble_of(name, seed):
-    return Ensemble(RUNS / f"{name}.yaml", RUNS / name, [(["particles.fill.seed"], [str(seed)])], program=PROGRAM)
+def scene(name, seed):
+    """The seed is that of the rock as well as of sizes, places and orientations."""
+    changes, _ = cases()[name]
+    made = rig(rock_scale(PROGRAM, changes.get("triangles", 40), seed), PROPORTIONS, seed=seed, **changes)
+    made["particles"][0]["seed"] = seed
+    return made
 
 
-def measure(name, seed):
+def scene_path(name, seed):
+    return STUDY.runs / name / f"{seed}.yaml"
+
+
+def member_of(name, seed):
+    """None if it is not finished."""
+    if not scene_path(name, seed).exists():
+        return None
+    (member,) = STUDY.ensemble(scene_path(name, seed), f"{name}/{seed}").members
+    return member if member.is_finished() else None
+
+
+def measure(name, seed, member):
     """Numbers of a run. Flow energy: mean of the kinetic energy after the opening of the doors."""
-    member = ensemble_of(name, seed).members[0]
     series, summary = Run(member.folder).series(), member.summary()
     time, moving = series["time"], series["kinetic"] + series["rotational"]
     during = (time >= PROPORTIONS["opening"]) & (time <= PROPORTIONS["opening"] + FLOW)
@@ -124,10 +122,10 @@ def fitted_angle(x, heights):
 
 
 def collect():
-    commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, capture_output=True, text=True)
     planned = [(name, seed) for name, (_, seeds) in cases().items() for seed in range(1, seeds + 1)]
-    rows = [measure(name, seed) for name, seed in planned if ensemble_of(name, seed).members[0].is_finished()]
-    return {"commit": commit.stdout.strip() or "unknown", "proportions": PROPORTIONS, "planned": len(planned), "rows": rows}
+    members = [(name, seed, member_of(name, seed)) for name, seed in planned]
+    rows = [measure(*chosen) for chosen in members if chosen[2]]
+    return {"proportions": PROPORTIONS, "planned": len(planned), "rows": rows}
 
 
 def of_case(results, name, column):
@@ -159,8 +157,7 @@ def plot_pair(results, name, named, label, log):
         ax.grid(alpha=0.3)
     axes[0].axhspan(*BAND, color="0.9", zorder=0, label="experiments of the source")
     axes[0].legend()
-    figure.savefig(FOLDER / name, dpi=130)
-    plt.close(figure)
+    STUDY.save(figure, name)
 
 
 def plot_spring(results):
@@ -180,8 +177,7 @@ def plot_spring(results):
     for ax in axes:
         ax.set_xlabel("time [s]")
         ax.grid(alpha=0.3)
-    figure.savefig(FOLDER / "spring.png", dpi=130)
-    plt.close(figure)
+    STUDY.save(figure, "spring.png")
 
 
 def shown(values, digits):
@@ -191,18 +187,18 @@ def shown(values, digits):
     return text
 
 
-def table(results):
-    lines = ["| case | runs | angle [degrees] | flow energy [mJ] | peak [mJ] | mean height [mm] | coordination number | "
-             "kinetic energy at the end [J] | fit residual [mm] | error of the balance | deepest [mm] | processor time [s] |",
-             "|" + "---|" * 12]
+def numbers(results):
+    lines = []
     for name in dict.fromkeys(row["case"] for row in results["rows"]):
         column = {key: of_case(results, name, key) for key in ("angle", "flow", "peak", "height", "coordination", "rest",
                                                                "residual", "balance", "deepest", "seconds")}
-        lines.append(f"| {name.replace('_', ' ')} | {len(column['angle'])} | {shown(column['angle'], 1)} | "
-                     f"{shown(1e3 * column['flow'], 2)} | {shown(1e3 * column['peak'], 1)} | {shown(1e3 * column['height'], 1)} | "
-                     f"{shown(column['coordination'], 2)} | {column['rest'].max():.0e} | {1e3 * column['residual'].mean():.1f} | "
-                     f"{column['balance'].max():.0e} | {1e3 * column['deepest'].max():.1f} | {time_of(column['seconds'])} |")
-    return "\n".join(lines)
+        lines.append([name.replace("_", " "), len(column["angle"]), shown(column["angle"], 1), shown(1e3 * column["flow"], 2),
+                      shown(1e3 * column["peak"], 1), shown(1e3 * column["height"], 1), shown(column["coordination"], 2),
+                      f"{column['rest'].max():.0e}", f"{1e3 * column['residual'].mean():.1f}", f"{column['balance'].max():.0e}",
+                      f"{1e3 * column['deepest'].max():.1f}", time_of(column["seconds"])])
+    return table(["case", "runs", "angle [degrees]", "flow energy [mJ]", "peak [mJ]", "mean height [mm]", "coordination number",
+                  "kinetic energy at the end [J]", "fit residual [mm]", "error of the balance", "deepest [mm]",
+                  "processor time [s]"], lines)
 
 
 def time_of(seconds):
@@ -218,22 +214,12 @@ def make_page(results):
     plot_spring(results)
     timed = [row["seconds"] for row in results["rows"] if row["seconds"] is not None]
     seconds = np.mean(timed) * results["planned"] if timed else math.nan
-    texts = {"table": table(results), "minutes": f"{seconds / 60:.0f}", "half": f"{seconds / 120:.0f}",
-             "runs": str(len(results["rows"])), "commit": results["commit"], "planned": str(results["planned"]), "timed": str(len(timed)),
+    texts = {"table": numbers(results), "minutes": f"{seconds / 60:.0f}", "half": f"{seconds / 120:.0f}",
+             "runs": str(len(results["rows"])), "planned": str(results["planned"]), "timed": str(len(timed)),
              "mass": f"{1e3 * results['rows'][0]['mass']:.0f}",
              "measured": f"{min(row['measured_step'] for row in results['rows']):.1e}"}
-    texts |= {key: f"{value:g}" for key, value in results["proportions"].items()}
-    page = (FOLDER / "page.md").read_text()
-    for name, text in texts.items():
-        page = page.replace("{{" + name + "}}", text)
-    (FOLDER / "README.md").write_text(page)
+    return texts | {key: str(value) for key, value in results["proportions"].items()}
 
 
 if __name__ == "__main__":
-    if sys.argv[1:] not in ([], ["--keep"], ["--finished"]):
-        raise SystemExit(__doc__)
-    if not sys.argv[1:]:
-        compute()
-    if "--keep" not in sys.argv:
-        RESULTS.write_text(json.dumps(collect()) + "\n")
-    make_page(json.loads(RESULTS.read_text()))
+    STUDY.main(compute, make_page, collect)

@@ -5,28 +5,17 @@ Usage: python run.py [--keep]
 QUICK=1 in the environment takes a quarter of the orientations.
 """
 
-import json
 import math
-import os
-import subprocess
 import sys
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 
-FOLDER = Path(__file__).resolve().parent
-ROOT = FOLDER.parent.parent
-sys.path.insert(0, str(ROOT / "tools"))
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+from study import QUICK, Study, plt, table, write_scene  # noqa: E402
 from run_folder import Run  # noqa: E402
 
-PROGRAM = ROOT / "build" / "release" / "scree"
-QUICK = os.environ.get("QUICK") == "1"
-RUNS = ROOT / "runs" / ("clumps_quick" if QUICK else "clumps")
-RESULTS = FOLDER / "results.json"
+STUDY = Study(__file__)
 ORIENTATIONS = 100 if QUICK else 400
 RADIUS, MODULUS = 0.01, 1e8 / (2 * (1 - 0.25**2))
 DEPTHS = [0.002, 0.005, 0.01, 0.02, 0.03]
@@ -74,14 +63,8 @@ def scene(shape, heights, velocity, law, time):
     }
 
 
-def run(name, text):
-    RUNS.mkdir(parents=True, exist_ok=True)
-    path = RUNS / f"{name}.yaml"
-    path.write_text(json.dumps(text))  # JSON is YAML
-    print("+ scree run", path.name, flush=True)
-    subprocess.run([str(PROGRAM), "run", str(path), "-o", str(RUNS / name), "--replace", "--quiet"], check=True,
-                   env=dict(os.environ, OMP_NUM_THREADS="1"))
-    return Run(RUNS / name)
+def run(name, scene):
+    return Run(STUDY.run(write_scene(STUDY.runs / f"{name}.yaml", scene), name).folder)
 
 
 def press(name, shape):
@@ -116,7 +99,7 @@ def compute():
     shapes["sphere"] = {"source": "sphere", "size": 2 * RADIUS}
     for name, shape in shapes.items():
         results["rebound"][name] = rebound(f"rebound_{name}", shape)
-    RESULTS.write_text(json.dumps(results, indent=1) + "\n")
+    return results
 
 
 def expected(num, depth):
@@ -124,7 +107,7 @@ def expected(num, depth):
     return num * math.sqrt(0.5) * 0.4 * depth
 
 
-def draw_force(results, path):
+def draw_force(results):
     figure, axes = plt.subplots(1, 2, figsize=(11, 4.6), layout="constrained")
     k = DEPTHS.index(0.02)
     error = 1 / math.sqrt(results["orientations"])
@@ -146,11 +129,10 @@ def draw_force(results, path):
     axes[1].axhline(1, color="k", lw=0.8)
     axes[1].set(xlabel="depth d/R", ylabel="mean force / Hertz", ylim=(0, 2.5))
     axes[1].legend(frameon=False)
-    figure.savefig(path, dpi=110)
-    plt.close(figure)
+    STUDY.save(figure, "force.png", dpi=110)
 
 
-def draw_rebound(results, path):
+def draw_rebound(results):
     figure, axes = plt.subplots(figsize=(6.5, 4.4), layout="constrained")
     for kind, numbers, style, text in (("clump", CLUMPS, "C3o-", "clump of so many spheres"),
                                        ("mesh", MESHES_OF_REBOUND, "C0s-", "polyhedron of so many triangles")):
@@ -158,33 +140,25 @@ def draw_rebound(results, path):
     axes.axhline(results["rebound"]["sphere"], color="k", lw=0.8, label="sphere")
     axes.set(xscale="log", xlabel="number", ylabel="speed after / before", ylim=(0, 0.8))
     axes.legend(frameon=False)
-    figure.savefig(path, dpi=110)
-    plt.close(figure)
+    STUDY.save(figure, "rebound.png", dpi=110)
 
 
-def table(results):
-    lines = ["| shape | " + " | ".join(f"d = {d} R" for d in DEPTHS) + " | rebound |",
-             "|---|" + "---|" * (len(DEPTHS) + 1)]
+def forces_table(results):
+    rows = []
     names = {"sphere": "sphere"} | {f"clump_{n}": f"clump of {n}" for n in CLUMPS}
     names |= {f"mesh_{n}": f"{n} triangles" for n in sorted({*MESHES, *MESHES_OF_REBOUND})}
     for name, text in names.items():
         press, after = results["press"].get(name), results["rebound"].get(name)
         cells = [f"{m:.3f} ± {s:.3f}" for m, s in zip(press["mean"], press["deviation"], strict=True)] if press else [""] * 5
-        lines.append(f"| {text} | " + " | ".join(cells) + f" | {'' if after is None else f'{after:.3f}'} |")
-    return "\n".join(lines)
+        rows.append([text, *cells, "" if after is None else f"{after:.3f}"])
+    return table(["shape", *(f"d = {d} R" for d in DEPTHS), "rebound"], rows)
 
 
-def main():
-    if "--keep" not in sys.argv[1:]:
-        compute()
-    results = json.loads(RESULTS.read_text())
-    draw_force(results, FOLDER / "force.png")
-    draw_rebound(results, FOLDER / "rebound.png")
-    page = (FOLDER / "page.md").read_text()
-    for name, text in {"table": table(results), "orientations": str(results["orientations"])}.items():
-        page = page.replace("{{" + name + "}}", text)
-    (FOLDER / "README.md").write_text(page)
+def make_page(results):
+    draw_force(results)
+    draw_rebound(results)
+    return {"table": forces_table(results), "orientations": str(results["orientations"])}
 
 
 if __name__ == "__main__":
-    main()
+    STUDY.main(compute, make_page)

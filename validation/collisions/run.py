@@ -2,33 +2,25 @@
 README.md and its plots.
 
 Usage: python run.py [--keep]
-  --keep   plots and page again from results.jsonl, without computing anything
-QUICK=1 in the environment computes with fewer pairs and meshes, into results of its own. A study that was broken off goes on
-where it stopped; delete results.jsonl to begin anew.
+  --keep   plots and page again from results.json, without computing anything
+QUICK=1 in the environment computes with fewer pairs and meshes. A study that was broken off goes on where it stopped.
 """
 
 import json
 import math
-import os
-import subprocess
 import sys
 import threading
 import time
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import NullFormatter
 
-FOLDER = Path(__file__).resolve().parent
-ROOT = FOLDER.parent.parent
-BUILD = ROOT / "build" / "release"
-QUICK = os.environ.get("QUICK") == "1"
-RESULTS = FOLDER / ("results_quick.jsonl" if QUICK else "results.jsonl")
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+from study import BUILD, QUICK, Study, build, in_parallel, output_of, plt, table  # noqa: E402
+
+STUDY = Study(__file__)
+STORE = STUDY.runs / "lines.jsonl"  # a line for each case that is finished
 PAIRS = 500 if QUICK else 10000
 SPHERES = (40, 84, 180) if QUICK else (40, 84, 180, 400, 1000)
 ROCKS = (10, 40, 70) if QUICK else (10, 40, 70, 150, 300, 1000)
@@ -71,31 +63,27 @@ def key(case):
 
 
 def stored():
-    if not RESULTS.exists():
+    if not STORE.exists():
         return {}
-    lines = [json.loads(line) for line in RESULTS.read_text().splitlines()]
+    lines = [json.loads(line) for line in STORE.read_text().splitlines() if line.endswith("}")]
     return {line["key"]: line for line in lines}
 
 
 def compute():
-    for command in (["cmake", "--preset", "release", "--log-level=WARNING"],
-                    ["cmake", "--build", BUILD, "--target", "collisions_study"]):
-        subprocess.run([str(part) for part in command], check=True, cwd=BUILD.resolve().parent.parent)
+    build("collisions_study")
     done, lock = stored(), threading.Lock()
     todo = [case for case in cases() if key(case) not in done]
 
     def one(case):
         begin = time.perf_counter()
-        program = subprocess.run([str(BUILD / "studies/collisions_study"), *(str(part) for part in case)], check=True,
-                                 capture_output=True, text=True, env=dict(os.environ, OMP_NUM_THREADS="1"))
-        line = json.loads(program.stdout.splitlines()[-1])
+        line = json.loads(output_of([BUILD / "studies/collisions_study", *case]).splitlines()[-1])
         line |= {"key": key(case), "seconds": time.perf_counter() - begin}
-        with lock, open(RESULTS, "a") as file:
+        with lock, open(STORE, "a") as file:
             file.write(json.dumps(line) + "\n")
-        print(f"{case}: {line['seconds']:.0f} s", flush=True)
 
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        list(pool.map(one, todo))
+    in_parallel(one, todo)
+    done = stored()
+    return {"lines": [done[key(case)] for case in cases()]}
 
 
 def select(lines, prefix, modulus, law=HERTZ, offset=0):
@@ -111,11 +99,6 @@ def fitted_order(x, y):
         return math.nan, math.nan
     coefficients, covariance = np.polyfit(np.log(x), np.log(y), 1, cov=True)
     return -coefficients[0], math.sqrt(covariance[0, 0])
-
-
-def save(figure, name):
-    figure.savefig(FOLDER / name, dpi=130)
-    plt.close(figure)
 
 
 def plain_ticks(ax, places, names=None):
@@ -142,7 +125,7 @@ def plot_energy_over_time(lines, prefix, moduli, name, shown):
         ax.grid(alpha=0.3)
     axes[0].set_ylabel("kinetic energy over that at the start")
     axes[-1].legend(title="triangles", fontsize=8)
-    save(figure, name)
+    STUDY.save(figure, name)
 
 
 def farthest(column):
@@ -169,13 +152,8 @@ def plot_convergence(lines, prefix, moduli, quantities, name):
             ax.legend(fontsize=8)
             row.append(f"{order:.2f} ± {error:.2f}")
         rows.append(row)
-    save(figure, name)
+    STUDY.save(figure, name)
     return rows
-
-
-def table(head, rows):
-    text = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
-    return "\n".join(text + ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows])
 
 
 def numbers(lines, prefix, moduli):
@@ -213,7 +191,7 @@ def plot_laws(lines):
         plain_ticks(ax, [1 / n for n in STEPS], [f"1/{n}" for n in STEPS])
     axes[0].set_ylabel("root mean square of energy after/before - 1")
     axes[0].legend(fontsize=8)
-    save(figure, "laws.png")
+    STUDY.save(figure, "laws.png")
     return table(["shape", "law", "pairs", *(f"{n} steps" for n in STEPS), "order", "nine tenths within", "all within"], rows)
 
 
@@ -223,7 +201,8 @@ def law_cost(lines):
     return np.median([value / seconds[shape, steps, HERTZ] for (shape, steps, law), value in seconds.items() if law == LAWS[1][0]])
 
 
-def make_page(lines):
+def make_page(results):
+    lines = results["lines"]
     plot_energy_over_time(lines, "sphere", SPHERE_MODULI, "two_spheres.png", (0, 40, 84, 180, 1000))
     spheres = plot_convergence(lines, "sphere", SPHERE_MODULI, (
         ("mean, largest distance from the true sphere", farthest("mean")),
@@ -233,21 +212,13 @@ def make_page(lines):
         ("mean, largest distance from the finest", farthest("mean")),
         ("deviation, largest distance from the finest", farthest("deviation"))), "two_rocks_convergence.png")
     orders = ["E", "order of the mean", "order of the standard deviation"]
-    parts = {
+    return {
         "spheres": numbers(lines, "sphere", SPHERE_MODULI), "sphere_orders": table(orders, spheres),
         "rocks": numbers(lines, "rock", ROCK_MODULI), "rock_orders": table(orders, rocks), "laws": plot_laws(lines),
         "cost": f"{law_cost(lines):.2f}",
         "minutes": f"{sum(x['seconds'] for x in lines) / 60:.0f}", "pairs": f"{PAIRS}",
     }
-    page = (FOLDER / "page.md").read_text()
-    for name, text in parts.items():
-        page = page.replace("{{" + name + "}}", text)
-    (FOLDER / "README.md").write_text(page)
 
 
 if __name__ == "__main__":
-    if sys.argv[1:] not in ([], ["--keep"]):
-        raise SystemExit(__doc__)
-    if not sys.argv[1:]:
-        compute()
-    make_page(list(stored().values()))
+    STUDY.main(compute, make_page)

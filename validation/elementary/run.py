@@ -1,52 +1,34 @@
 """Elementary cases of single bodies against published values, closed forms and experiment: makes README.md and its plots.
 
 Usage: python run.py [--keep]
-  --keep   plots and page again from results.jsonl and energy.txt, without computing anything
+  --keep   plots and page again from results.json, without computing anything
+QUICK=1 in the environment computes the same; it takes minutes at most.
 """
 
 import json
 import math
-import os
 import re
-import subprocess
 import sys
 from pathlib import Path
 
-import matplotlib
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+from study import BUILD, Study, build, output_of, plt, table  # noqa: E402
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
-
-FOLDER = Path(__file__).resolve().parent
-ROOT = FOLDER.parent.parent
-BUILD = ROOT / "build" / "release"
-RESULTS = FOLDER / "results.jsonl"
-ENERGY = FOLDER / "energy.txt"
+STUDY = Study(__file__)
+ENERGY_LINE = r"(cubes|rocks), model: (.*), dt = (\S+) s: kinetic energy changed by (\S+) in (\d+)"
 
 # Test 4, sticking: Al oxide on soda-lime glass, as printed in Chung & Ooi (2011)
 EXPERIMENT = [(10, 0.675), (20, 0.599)]
 
 
-def run(command, **options):
-    print("+", " ".join(str(part) for part in command), flush=True)
-    return subprocess.run([str(part) for part in command], check=True, **options)
-
-
 def compute():
-    run(["cmake", "--preset", "release", "--log-level=WARNING"], cwd=BUILD.resolve().parent.parent)
-    run(["cmake", "--build", BUILD, "--target", "elementary_study", "test_energy_conserving"], cwd=BUILD.resolve().parent.parent)
-    environment = dict(os.environ, OMP_NUM_THREADS="1")
-    for program, path in ((BUILD / "studies/elementary_study", RESULTS), (BUILD / "tests/test_energy_conserving", ENERGY)):
-        path.write_text(run([program], capture_output=True, text=True, env=environment).stdout)
+    build("elementary_study", "test_energy_conserving")
+    return {"lines": [json.loads(line) for line in output_of([BUILD / "studies/elementary_study"]).splitlines()],
+            "energy": re.findall(ENERGY_LINE, output_of([BUILD / "tests/test_energy_conserving"]))}
 
 
 def select(lines, part, **wanted):
     return [x for x in lines if x["part"] == part and all(x[key] == value for key, value in wanted.items())]
-
-
-def save(figure, name):
-    figure.savefig(FOLDER / name, dpi=130)
-    plt.close(figure)
 
 
 def plot_force(lines):
@@ -66,7 +48,7 @@ def plot_force(lines):
         ax.grid(alpha=0.3)
         ax.legend(fontsize=8)
     axes[0].set_ylabel("normal force [N]")
-    save(figure, "force_over_indentation.png")
+    STUDY.save(figure, "force_over_indentation.png")
 
 
 def plot_test_4(lines):
@@ -93,7 +75,7 @@ def plot_test_4(lines):
         ax.set(xlabel="incident angle [degrees]", ylabel=label)
         ax.grid(alpha=0.3)
     axes[0].legend(fontsize=8)
-    save(figure, "oblique.png")
+    STUDY.save(figure, "oblique.png")
 
 
 def plot_tests_5_and_6(lines):
@@ -109,7 +91,7 @@ def plot_tests_5_and_6(lines):
         ax.set(xlabel="$v_s/(\\mu v_n)$ before", ylabel="$v_s'/(\\mu v_n')$ after", title=part.replace("_", " "))
         ax.grid(alpha=0.3)
         ax.legend(fontsize=8)
-    save(figure, "contact_point.png")
+    STUDY.save(figure, "contact_point.png")
 
 
 def plot_drops(lines):
@@ -121,16 +103,13 @@ def plot_drops(lines):
     axes.set(xlabel="bounce", ylabel="height [m]", title="Marks: scree; dotted: $e^{2k} h$")
     axes.grid(alpha=0.3)
     axes.legend()
-    save(figure, "drops.png")
+    STUDY.save(figure, "drops.png")
 
 
-ENERGY_LINE = r"(cubes|rocks), model: (.*), dt = (\S+) s: kinetic energy changed by (\S+) in (\d+)"
-
-
-def plot_energy(text):
+def plot_energy(found):
     figure, axes = plt.subplots(figsize=(6.5, 4.2), layout="constrained")
     series = {}
-    for bodies, law, dt, change, _ in re.findall(ENERGY_LINE, text):
+    for bodies, law, dt, change, _ in found:
         name = law.replace("energy_conserving, energy_exponent: 1, stiffness_factor: 0.03", "energy_conserving, p = 1")
         series.setdefault((name, bodies), []).append((float(dt), float(change)))
     colours = {}
@@ -141,12 +120,7 @@ def plot_energy(text):
     axes.set(xlabel="time step [s]", ylabel="change of kinetic energy, r.m.s.")
     axes.grid(alpha=0.3, which="both")
     axes.legend(fontsize=7)
-    save(figure, "energy.png")
-
-
-def table(header, rows):
-    lines = ["| " + " | ".join(header) + " |", "|" + "---|" * len(header)]
-    return "\n".join(lines + ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows])
+    STUDY.save(figure, "energy.png")
 
 
 def deviation(line):
@@ -182,22 +156,15 @@ def experiment_table(lines):
     return table(["angle", "experiment", "scree", "deviation"], rows)
 
 
-def main():
-    if "--keep" not in sys.argv:
-        compute()
-    lines = [json.loads(line) for line in RESULTS.read_text().splitlines()]
+def make_page(results):
+    lines = results["lines"]
     plot_force(lines)
     plot_test_4(lines)
     plot_tests_5_and_6(lines)
     plot_drops(lines)
-    plot_energy(ENERGY.read_text())
-    page = (FOLDER / "page.md").read_text()
-    cells = {"impacts": impact_table(lines), "drops": drop_table(lines), "experiment": experiment_table(lines)}
-    for name, text in cells.items():
-        page = page.replace("{{" + name + "}}", text)
-    (FOLDER / "README.md").write_text(page)
-    print(f"wrote {FOLDER / 'README.md'}")
+    plot_energy(results["energy"])
+    return {"impacts": impact_table(lines), "drops": drop_table(lines), "experiment": experiment_table(lines)}
 
 
 if __name__ == "__main__":
-    main()
+    STUDY.main(compute, make_page)

@@ -1,31 +1,22 @@
 """Can spheres of high friction stand for polyhedra in a mill? Makes README.md and its pictures.
 
 Usage: python run.py [--keep]
-  --keep   pictures and page again from the runs in runs/mill_study, without computing anything
-QUICK=1 in the environment takes a third of the particles, in runs/mill_study_quick.
+  --keep   pictures and page again from results.json and the runs in runs/mill, without computing anything
+QUICK=1 in the environment takes a third of the particles. A study that was broken off goes on where it stopped.
 """
 
-import json
-import os
-import subprocess
 import sys
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 
-FOLDER = Path(__file__).resolve().parent
-ROOT = FOLDER.parent.parent
-sys.path.insert(0, str(ROOT / "tools"))
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+from study import QUICK, ROOT, Study, plt, table  # noqa: E402
 from fields import Fields  # noqa: E402
 from run_folder import Run  # noqa: E402
 
+STUDY = Study(__file__)
 SCENE = ROOT / "scenes" / "tumbling_mill_polyhedra.yaml"
-QUICK = os.environ.get("QUICK") == "1"
-RUNS = ROOT / "runs" / ("mill_study_quick" if QUICK else "mill_study")
 RADIUS, SPEED, FROM = 0.15, 4.0435, 0.98
 CASES = [  # name, text, shape, friction of both contact laws (None: the scene's)
     ("sphere_low", "spheres, friction 0.154", "sphere", None),
@@ -35,16 +26,16 @@ CASES = [  # name, text, shape, friction of both contact laws (None: the scene's
 
 
 def compute():
-    program = ROOT / "build" / "release" / "scree"
     for name, _, shape, friction in CASES:
-        command = [program, "run", SCENE, "-o", RUNS / name, "--replace", "--quiet", "--set",
-                   f"particles.bodies.shape={shape}"]
-        if QUICK:
-            command += ["--set", "particles.bodies.count=150"]
-        for law in (0, 1) if friction else ():
-            command += ["--set", f"contact_laws.{law}.friction_coefficient={friction}"]
-        print("+", " ".join(str(part) for part in command), flush=True)
-        subprocess.run([str(part) for part in command], check=True, env=dict(os.environ, OMP_NUM_THREADS="1"))
+        settings = [f"particles.bodies.shape={shape}"] + ["particles.bodies.count=150"] * QUICK
+        settings += [f"contact_laws.{law}.friction_coefficient={friction}" for law in (0, 1) if friction]
+        STUDY.run(SCENE, name, settings)
+    results = {name: measure(name) for name, *_ in CASES}
+    return results | {"elsewhere": {f"{one} and cube": elsewhere(one, "cube") for one in ("sphere_low", "sphere_high")}}
+
+
+def run_of(name):
+    return Run(STUDY.runs / name / "only")
 
 
 def surface(fields):
@@ -63,7 +54,7 @@ def slope_angle(x, height):
 
 
 def measure(name):
-    run = Run(RUNS / name)
+    run = run_of(name)
     fields, series, summary = Fields(run), run.series(), run.summary()
     time, work = series["time"], series["work_drum"]
     period = float(fields.averages["period"])
@@ -95,14 +86,14 @@ def measure(name):
 
 def elsewhere(first, second):
     """Share of the material of one run that is in other cells in another."""
-    one, two = (Fields(Run(RUNS / name)).across(1)[1] for name in (first, second))
+    one, two = (Fields(run_of(name)).across(1)[1] for name in (first, second))
     return float(np.abs(one / one.sum() - two / two.sum()).sum() / 2)
 
 
-def draw_maps(path):
+def draw_maps():
     figure, axes = plt.subplots(2, 3, figsize=(13, 8), layout="constrained", sharex=True, sharey=True)
     for column, (name, text, _, _) in enumerate(CASES):
-        fields = Fields(Run(RUNS / name))
+        fields = Fields(run_of(name))
         _, fraction, velocity = fields.across(1)
         x, z = fields.edges(0) * 1e3, fields.edges(2) * 1e3
         porosity = axes[0, column].pcolormesh(x, z, np.where(fraction > 0, 1 - fraction, np.nan).T, cmap="magma_r",
@@ -118,25 +109,23 @@ def draw_maps(path):
     for row, (mesh, text) in enumerate(((porosity, "porosity [1]"), (speed, "speed [m/s]"))):
         axes[row, 0].set_ylabel("z [mm]")
         figure.colorbar(mesh, ax=axes[row], label=text)
-    figure.savefig(path, dpi=90)
-    plt.close(figure)
+    STUDY.save(figure, "maps.png", dpi=90)
 
 
-def draw_surfaces(path):
+def draw_surfaces():
     figure, axes = plt.subplots(figsize=(7, 5), layout="constrained")
     for name, text, _, _ in CASES:
-        x, height = surface(Fields(Run(RUNS / name)))
+        x, height = surface(Fields(run_of(name)))
         axes.plot(x * 1e3, height * 1e3, marker=".", label=text)
     axes.set(xlabel="x [mm]", ylabel="height of the settled material [mm]", aspect="equal")
     axes.legend(frameon=False)
-    figure.savefig(path, dpi=90)
-    plt.close(figure)
+    STUDY.save(figure, "surfaces.png", dpi=90)
 
 
-def draw_collisions(path):
+def draw_collisions():
     figure, axes = plt.subplots(figsize=(7, 4.5), layout="constrained")
     for (name, text, _, _), colour in zip(CASES, ("C0", "C1", "C2"), strict=True):
-        fields = Fields(Run(RUNS / name))
+        fields = Fields(run_of(name))
         rows = fields.collisions["collisions_of_particles"]
         edges = rows["bin_edges"]
         seconds = float(fields.averages["num_periods"] * fields.averages["period"])
@@ -146,11 +135,10 @@ def draw_collisions(path):
                       linestyle=style, label=f"{text}, {part}")
     axes.set(xscale="log", yscale="log", xlabel="energy lost in a collision [J]", ylabel="collisions per second and decade")
     axes.legend(frameon=False, fontsize=8)
-    figure.savefig(path, dpi=90)
-    plt.close(figure)
+    STUDY.save(figure, "collisions.png", dpi=90)
 
 
-def table(results):
+def numbers(results):
     rows = [("power of the drum [W]", lambda r: f"{r['power']:.3f} ± {r['power_error']:.3f}"),
             ("power / (m g R ω)", lambda r: f"{r['scaled_power']:.3f}"),
             ("x of the centre of mass / R", lambda r: f"{r['offset']:.3f}"),
@@ -161,29 +149,20 @@ def table(results):
             ("solid fraction of the packing", lambda r: f"{r['packing']:.3f}"),
             ("largest indentation [mm]", lambda r: f"{r['indentation'] * 1e3:.2f}"),
             ("error of the energy balance", lambda r: f"{r['energy_error']:.1e}")]
-    lines = ["| | " + " | ".join(text for _, text, _, _ in CASES) + " |", "|---|" + "---|" * len(CASES)]
-    lines += [f"| {text} | " + " | ".join(show(results[name]) for name, *_ in CASES) + " |" for text, show in rows]
-    return "\n".join(lines)
+    return table(["", *(text for _, text, _, _ in CASES)],
+                 [[text, *(show(results[name]) for name, *_ in CASES)] for text, show in rows])
 
 
-def main():
-    if "--keep" not in sys.argv[1:]:
-        compute()
-    results = {name: measure(name) for name, *_ in CASES}
-    results["elsewhere"] = {f"{one} and cube": elsewhere(one, "cube") for one in ("sphere_low", "sphere_high")}
-    (FOLDER / "results.json").write_text(json.dumps(results, indent=1) + "\n")
-    draw_maps(FOLDER / "maps.png")
-    draw_surfaces(FOLDER / "surfaces.png")
-    draw_collisions(FOLDER / "collisions.png")
-    page = (FOLDER / "page.md").read_text()
-    for name, text in {
-        "table": table(results),
+def make_page(results):
+    draw_maps()
+    draw_surfaces()
+    draw_collisions()
+    return {
+        "table": numbers(results),
         "low": f"{100 * results['elsewhere']['sphere_low and cube']:.1f}",
         "high": f"{100 * results['elsewhere']['sphere_high and cube']:.1f}",
-    }.items():
-        page = page.replace("{{" + name + "}}", text)
-    (FOLDER / "README.md").write_text(page)
+    }
 
 
 if __name__ == "__main__":
-    main()
+    STUDY.main(compute, make_page)

@@ -2,31 +2,21 @@
 
 Usage: python run.py [--keep]
   --keep   pictures and page again from results.json and the runs in runs/mill_speeds, without computing anything
-QUICK=1 in the environment takes every other speed, in runs/mill_speeds_quick.
+QUICK=1 in the environment takes every other speed. A study that was broken off goes on where it stopped.
 """
 
-import json
 import math
-import os
-import subprocess
 import sys
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 
-FOLDER = Path(__file__).resolve().parent
-ROOT = FOLDER.parent.parent
-sys.path.insert(0, str(ROOT / "tools"))
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+from study import QUICK, ROOT, Study, in_parallel, plt, table  # noqa: E402
 from fields import Fields  # noqa: E402
 from run_folder import Run  # noqa: E402
 
-QUICK = os.environ.get("QUICK") == "1"
-RUNS = ROOT / "runs" / ("mill_speeds_quick" if QUICK else "mill_speeds")
-RESULTS = FOLDER / "results.json"
+STUDY = Study(__file__)
 RADIUS, GRAVITY, START = 0.15, 9.81, 0.2
 SPEEDS = [40, 60, 80, 100] if QUICK else [40, 50, 60, 70, 80, 90, 100, 110]
 CASES = {"with": "eight lifters of 10 mm x 10 mm", "without": "smooth drum"}
@@ -39,27 +29,30 @@ def rate(percent):
 
 
 def compute():
-    for percent in SPEEDS:
-        revolution = 2 * math.pi / rate(percent)
-        for case in CASES:
-            values = {
-                "shapes.bead.size": 0.012, "particles.beads.count": 375, "time.step": 6e-5,
-                "time.end": f"{START + 2 * revolution + 1e-3:.6f}", "fields.from": f"{START + revolution:.6f}",
-                "walls.drum.motion.angular_velocity": f"{-rate(percent):.6f}",
-                "walls.lifters.motion.angular_velocity": f"{-rate(percent):.6f}", "output.frames": 0.5,
-            }
-            if case == "without":
-                values["walls.lifters.removed_at"] = 0
-            command = [ROOT / "build" / "release" / "scree", "run", ROOT / "scenes" / "tumbling_mill.yaml", "-o",
-                       RUNS / f"{case}_{percent}", "--replace", "--quiet"]
-            for key, value in values.items():
-                command += ["--set", f"{key}={value}"]
-            print("+", case, percent, flush=True)
-            subprocess.run([str(part) for part in command], check=True, env=dict(os.environ, OMP_NUM_THREADS="1"))
+    cases = [(case, percent) for percent in SPEEDS for case in CASES]
+    in_parallel(lambda chosen: run(*chosen), cases)
+    return {f"{case}_{percent}": measure(case, percent) for case, percent in cases}
+
+
+def run(case, percent):
+    revolution = 2 * math.pi / rate(percent)
+    values = {
+        "shapes.bead.size": 0.012, "particles.beads.count": 375, "time.step": 6e-5,
+        "time.end": f"{START + 2 * revolution + 1e-3:.6f}", "fields.from": f"{START + revolution:.6f}",
+        "walls.drum.motion.angular_velocity": f"{-rate(percent):.6f}",
+        "walls.lifters.motion.angular_velocity": f"{-rate(percent):.6f}", "output.frames": 0.5,
+    }
+    if case == "without":
+        values["walls.lifters.removed_at"] = 0
+    STUDY.run(ROOT / "scenes" / "tumbling_mill.yaml", f"{case}_{percent}", [f"{key}={value}" for key, value in values.items()])
+
+
+def run_of(case, percent):
+    return Run(STUDY.runs / f"{case}_{percent}" / "only")
 
 
 def measure(case, percent):
-    run = Run(RUNS / f"{case}_{percent}")
+    run = run_of(case, percent)
     summary, series = run.summary(), run.series()
     loads = summary["wall_loads"]
     power = sum(wall["power_of_periods"] for wall in loads.values())
@@ -76,7 +69,7 @@ def bond(share):
     return share * (1 - 0.1 / 2 ** (9 - 10 * share))
 
 
-def draw_power(results, path):
+def draw_power(results):
     figure, axes = plt.subplots(figsize=(7, 4.6), layout="constrained")
     for (case, text), style in zip(CASES.items(), ("C0o-", "C1s-"), strict=True):
         rows = [results[f"{case}_{p}"] for p in SPEEDS]
@@ -89,15 +82,14 @@ def draw_power(results, path):
     axes.plot(x, factor * bond(x / 100), "k--", lw=1, label="Bond's speed factor, scaled to 40-70 % with lifters")
     axes.set(xlabel="share of the critical speed [%]", ylabel="power [W]", ylim=(0, None))
     axes.legend(frameon=False)
-    figure.savefig(path, dpi=100)
-    plt.close(figure)
+    STUDY.save(figure, "power.png", dpi=100)
 
 
-def draw_maps(path):
+def draw_maps():
     figure, axes = plt.subplots(2, len(SHOWN), figsize=(11, 7.4), layout="constrained", sharex=True, sharey=True)
     for row, (case, text) in enumerate(CASES.items()):
         for column, percent in enumerate(SHOWN):
-            fields = Fields(Run(RUNS / f"{case}_{percent}"))
+            fields = Fields(run_of(case, percent))
             _, fraction, _ = fields.across(1)
             mesh = axes[row, column].pcolormesh(fields.edges(0) * 1e3, fields.edges(2) * 1e3,
                                                 np.where(fraction > 0, fraction, np.nan).T, cmap="viridis", vmin=0, vmax=0.7)
@@ -107,36 +99,28 @@ def draw_maps(path):
     figure.colorbar(mesh, ax=axes, label="solid fraction")
     figure.supxlabel("x [mm]")
     figure.supylabel("z [mm]")
-    figure.savefig(path, dpi=90)
-    plt.close(figure)
+    STUDY.save(figure, "maps.png", dpi=90)
 
 
-def table(results):
-    lines = ["| share of the critical speed [%] | with lifters [W] | power/(m g R ω) | smooth [W] | power/(m g R ω) |",
-             "|---|---|---|---|---|"]
+def numbers(results):
+    rows = []
     for percent in SPEEDS:
         cells = []
         for case in CASES:
             r = results[f"{case}_{percent}"]
             scaled = r["power"] / (r["mass"] * GRAVITY * RADIUS * rate(percent))
             cells += [f"{r['power']:.3f} ± {r['error']:.3f}", f"{scaled:.3f}"]
-        lines.append(f"| {percent} | " + " | ".join(cells) + " |")
-    return "\n".join(lines)
+        rows.append([percent, *cells])
+    return table(["share of the critical speed [%]", "with lifters [W]", "power/(m g R ω)", "smooth [W]", "power/(m g R ω)"], rows)
 
 
-def main():
-    if "--keep" not in sys.argv[1:]:
-        compute()
-    results = {f"{case}_{percent}": measure(case, percent) for case in CASES for percent in SPEEDS}
-    RESULTS.write_text(json.dumps(results, indent=1) + "\n")
-    draw_power(results, FOLDER / "power.png")
-    draw_maps(FOLDER / "maps.png")
-    page = (FOLDER / "page.md").read_text().replace("{{table}}", table(results))
-    worst = max(abs(r["energy_error"]) for r in results.values())
-    deepest = max(r["indentation"] for r in results.values())
-    page = page.replace("{{energy_error}}", f"{worst:.0e}").replace("{{indentation}}", f"{100 * deepest / 0.006:.0f}")
-    (FOLDER / "README.md").write_text(page)
+def make_page(results):
+    draw_power(results)
+    draw_maps()
+    rows = [results[f"{case}_{percent}"] for case in CASES for percent in SPEEDS]
+    return {"table": numbers(results), "energy_error": f"{max(abs(row['energy_error']) for row in rows):.0e}",
+            "indentation": f"{100 * max(row['indentation'] for row in rows) / 0.006:.0f}"}
 
 
 if __name__ == "__main__":
-    main()
+    STUDY.main(compute, make_page)

@@ -1,28 +1,20 @@
 """Errors and times of the overlap against exact arithmetic and CGAL: makes README.md and its plots.
 
 Usage: python run.py [--keep]
-  --keep   plots and page again from results.jsonl, without computing anything
+  --keep   plots and page again from results.json, without computing anything
 QUICK=1 in the environment takes a twentieth of the poses.
 """
 
 import json
-import os
 import platform
 import statistics
-import subprocess
 import sys
 from pathlib import Path
 
-import matplotlib
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+from study import BUILD, QUICK, Study, build, output_of, plt, table  # noqa: E402
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
-
-FOLDER = Path(__file__).resolve().parent
-ROOT = FOLDER.parent.parent
-BUILD = ROOT / "build" / "release"
-RESULTS = FOLDER / "results.jsonl"
-CERTIFICATE = FOLDER / "certificate.txt"
+STUDY = Study(__file__)
 
 ROUTES = [  # key of the lines, precision, text, colour, marker
     ("filtered", "double", "scree, filtered signs (default)", "C0", "o"),
@@ -35,24 +27,15 @@ ROUTES = [  # key of the lines, precision, text, colour, marker
 ]
 
 
-def run(command, **options):
-    print("+", " ".join(str(part) for part in command), flush=True)
-    return subprocess.run([str(part) for part in command], check=True, **options)
-
-
 def compute():
-    targets = ["overlap_study", "overlap_study_single", "test_overlap_certificate"]
-    run(["cmake", "--preset", "release", "--log-level=WARNING"], cwd=BUILD.resolve().parent.parent)
-    run(["cmake", "--build", BUILD, "--target", *targets], cwd=BUILD.resolve().parent.parent)
-    counts = ["4", "6", "1000"] if os.environ.get("QUICK") == "1" else ["60", "60", "50000"]
-    environment = dict(os.environ, OMP_NUM_THREADS="1")
-    with open(RESULTS, "w") as file:
-        for program in targets[:2]:
-            path = BUILD / "tests" / "reference" / program
-            output = run([path, *counts], capture_output=True, text=True, env=environment).stdout
-            file.writelines(line + "\n" for line in output.splitlines() if line.startswith("{\"part\""))
-    path = BUILD / "tests" / "test_overlap_certificate"
-    CERTIFICATE.write_text(run([path], capture_output=True, text=True, env=environment).stdout)
+    programs = ("overlap_study", "overlap_study_single")
+    build(*programs, "test_overlap_certificate")
+    counts = (4, 6, 1000) if QUICK else (60, 60, 50000)
+    told = "".join(output_of([BUILD / "tests" / "reference" / program, *counts]) for program in programs)
+    certificate = output_of([BUILD / "tests" / "test_overlap_certificate"]).splitlines()
+    return {"lines": [json.loads(line) for line in told.splitlines() if line.startswith('{"part"')],
+            "certificate": [line for line in certificate if line and "checks," not in line],
+            "machine": f"{processor()}, {platform.system()}, one thread"}
 
 
 def quantile(values, q):
@@ -98,8 +81,7 @@ def plot_error_over_time(lines):
     axes.set_title("Median (marks) to worst (lines) error; larger marks: more triangles")
     axes.grid(alpha=0.3)
     axes.legend(fontsize=8)
-    figure.savefig(FOLDER / "error_over_time.png", dpi=130)
-    plt.close(figure)
+    STUDY.save(figure, "error_over_time.png")
 
 
 def plot_growth(lines):
@@ -118,8 +100,7 @@ def plot_growth(lines):
     axes.set_title("Two spheres (solid) and two rocks (dashed), depth 1e-4 to 5e-2 of the size")
     axes.grid(alpha=0.3, which="both")
     axes.legend(fontsize=8)
-    figure.savefig(FOLDER / "growth.png", dpi=130)
-    plt.close(figure)
+    STUDY.save(figure, "growth.png")
 
 
 def plot_depth(lines):
@@ -133,17 +114,11 @@ def plot_depth(lines):
         ax.grid(alpha=0.3)
     axes[0].set_ylabel("error: of V by V, of S by |S|, of c by the size")
     axes[0].legend()
-    figure.savefig(FOLDER / "error_over_depth.png", dpi=130)
-    plt.close(figure)
+    STUDY.save(figure, "error_over_depth.png")
 
 
 def number(value, digits=2):
     return f"{value:.{digits}g}"
-
-
-def table(header, rows):
-    lines = ["| " + " | ".join(header) + " |", "|" + "---|" * len(header)]
-    return "\n".join(lines + ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows])
 
 
 def default_seconds(line):
@@ -220,21 +195,19 @@ def kind_table(lines, part):
     return table(header, rows)
 
 
-def write_page(lines):
-    template = (FOLDER / "page.md").read_text()
-    certificate = CERTIFICATE.read_text().split("\n")
-    cells = {
-        "machine": f"{processor()}, {platform.system()}, one thread",
+def make_page(results):
+    lines = results["lines"]
+    for plot in (plot_error_over_time, plot_growth, plot_depth):
+        plot(lines)
+    return {
+        "machine": results["machine"],
         "times": time_table(lines),
         "growth": growth_table(lines),
         "errors": error_table(lines),
         "kinds": kind_table(lines, "kind"),
         "lattice": kind_table(lines, "lattice"),
-        "certificate": "\n".join(line for line in certificate if line and "checks," not in line),
+        "certificate": "\n".join(results["certificate"]),
     }
-    for name, text in cells.items():
-        template = template.replace("{{" + name + "}}", text)
-    (FOLDER / "README.md").write_text(template)
 
 
 def processor():
@@ -244,16 +217,5 @@ def processor():
     return platform.machine()
 
 
-def main():
-    if "--keep" not in sys.argv:
-        compute()
-    lines = [json.loads(line) for line in RESULTS.read_text().splitlines()]
-    plot_error_over_time(lines)
-    plot_growth(lines)
-    plot_depth(lines)
-    write_page(lines)
-    print(f"wrote {FOLDER / 'README.md'}")
-
-
 if __name__ == "__main__":
-    main()
+    STUDY.main(compute, make_page)

@@ -7,27 +7,16 @@ QUICK=1 in the environment makes heaps of fewer bodies and seeds. A study that w
 
 import json
 import math
-import os
-import subprocess
 import sys
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 
-FOLDER = Path(__file__).resolve().parent
-ROOT = FOLDER.parent.parent
-sys.path.insert(0, str(ROOT / "tools"))
-from ensemble import Ensemble  # noqa: E402
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+from study import PROGRAM, QUICK, ROOT, Study, output_of, plt, table, write_scene  # noqa: E402
 from run_folder import Run  # noqa: E402
 
-PROGRAM = ROOT / "build" / "release" / "scree"
-QUICK = os.environ.get("QUICK") == "1"
-RUNS = ROOT / "runs" / ("patches_quick" if QUICK else "patches")
-RESULTS = FOLDER / "results.json"
+STUDY = Study(__file__)
 BODIES, SEEDS = (20, 2) if QUICK else (80, 8)
 DEPTH = 0.02  # of the lowest point in the plate, of the size
 SHAPES = ("l_shape", "u_shape", "ring")
@@ -57,7 +46,7 @@ def model(name):
     """Vertices and centre of mass of a mesh in models/."""
     path = ROOT / "models" / f"{name}.obj"
     vertices = [line.split()[1:4] for line in path.read_text().splitlines() if line.startswith("v ")]
-    told = subprocess.run([PROGRAM, "shape", path], check=True, capture_output=True, text=True).stdout
+    told = output_of([PROGRAM, "shape", path])
     centre = next(line.split()[1:4] for line in told.splitlines() if line.strip().startswith("centroid"))
     return np.array(vertices, dtype=float), np.array(centre, dtype=float)
 
@@ -98,13 +87,11 @@ def wrench(pieces, centre):
 def press():
     """Force and moment of the cases by mode."""
     listed = list(poses())
-    RUNS.mkdir(parents=True, exist_ok=True)
-    batch = RUNS / "poses.txt"
+    batch = STUDY.runs / "poses.txt"
     batch.write_text("".join(json.dumps({"id": str(k)} | pair) + "\n" for k, (_, _, pair, _) in enumerate(listed)))
     told = {}
     for mode, options in zip(MODES, ([], ["--patches"]), strict=True):
-        done = subprocess.run([PROGRAM, "overlap", *options, "--batch", batch], check=True, capture_output=True, text=True)
-        told[mode] = [json.loads(line) for line in done.stdout.splitlines()]
+        told[mode] = [json.loads(line) for line in output_of([PROGRAM, "overlap", *options, "--batch", batch]).splitlines()]
     results = {}
     for (case, abscissa, _, centre), merged, separate in zip(listed, told["merged"], told["separate"], strict=True):
         row = {"x": abscissa, "patches": len(separate["patches"])}
@@ -134,14 +121,11 @@ def heap_scene(shape):
 def heaps():
     rows = []
     for shape in SHAPES:
-        path = RUNS / f"{shape}.yaml"
-        path.write_text(json.dumps(heap_scene(shape), indent=1))
+        path = write_scene(STUDY.runs / f"{shape}.yaml", heap_scene(shape))
         varied = [(["solver.separate_patches"], ["false", "true"]),
                   (["particles.bodies.seed"], [str(k + 1) for k in range(SEEDS)])]
-        ensemble = Ensemble(path, RUNS / shape, varied, program=PROGRAM)
-        failed = ensemble.run()
-        if failed:
-            raise SystemExit(f"{failed[0].folder} did not finish; see messages.txt there")
+        ensemble = STUDY.ensemble(path, shape, varied)
+        STUDY.expect(ensemble.run())
         rows += [{"shape": shape, "mode": MODES[member.values["solver.separate_patches"] == "true"]} | measure_heap(member)
                  for member in ensemble.members]
     return rows
@@ -157,7 +141,7 @@ def measure_heap(member):
         "coordination": summary["counters"]["coordination_number"],
         "deepest": summary["counters"]["largest_indentation"],
         "moving": summary["energies"]["kinetic"] + summary["energies"]["rotational"],
-        "balance": abs(summary["energy_error"]), "seconds": summary["wall_seconds"],
+        "balance": abs(summary["energy_error"]), "seconds": summary["processor_seconds"],
     }
 
 
@@ -180,8 +164,7 @@ def plot_press(results):
     axes[0, 0].set_ylabel("force over c E* size²")
     axes[1, 0].set_ylabel("moment over c E* size³")
     axes[0, 0].legend()
-    figure.savefig(FOLDER / "press.png", dpi=130)
-    plt.close(figure)
+    STUDY.save(figure, "press.png")
 
 
 def plot_heaps(results):
@@ -197,13 +180,11 @@ def plot_heaps(results):
         ax.set(ylabel=label)
         ax.grid(alpha=0.3)
     axes[0].legend()
-    figure.savefig(FOLDER / "heaps.png", dpi=130)
-    plt.close(figure)
+    STUDY.save(figure, "heaps.png")
 
 
 def heaps_table(results):
-    lines = ["| | patches | mean height [mm] | spread [mm] | coordination number | deepest [mm] | kinetic energy left [J] | "
-             "error of the balance | time |", "|" + "---|" * 9]
+    lines = []
     for shape in SHAPES:
         medians = {}
         for mode in MODES:
@@ -215,24 +196,19 @@ def heaps_table(results):
                 return f"{np.mean(values):.{digits}f} ± {np.std(values, ddof=1) / math.sqrt(len(values)):.{digits}f}"
 
             worst = {name: max(row[name] for row in rows) for name in ("deepest", "moving", "balance")}
-            lines.append(f"| {shape} | {mode} | {spread('height', 1e3)} | {spread('spread', 1e3)} | {spread('coordination', 1, 2)} | "
-                         f"{1e3 * worst['deepest']:.1f} | {worst['moving']:.0e} | {worst['balance']:.0e} | "
-                         f"{medians[mode] / medians['merged']:.2f} |")
-    return "\n".join(lines)
+            lines.append([shape, mode, spread("height", 1e3), spread("spread", 1e3), spread("coordination", 1, 2),
+                          f"{1e3 * worst['deepest']:.1f}", f"{worst['moving']:.0e}", f"{worst['balance']:.0e}",
+                          f"{medians[mode] / medians['merged']:.2f}"])
+    return table(["", "patches", "mean height [mm]", "spread [mm]", "coordination number", "deepest [mm]",
+                  "kinetic energy left [J]", "error of the balance", "time"], lines)
 
 
 def make_page(results):
     plot_press(results)
     plot_heaps(results)
-    page = (FOLDER / "page.md").read_text()
-    for name, text in {"heaps": heaps_table(results), "bodies": str(BODIES), "seeds": str(SEEDS)}.items():
-        page = page.replace("{{" + name + "}}", text)
-    (FOLDER / "README.md").write_text(page)
+    minutes = sum(row["seconds"] for row in results["heaps"]) / 60
+    return {"heaps": heaps_table(results), "bodies": str(BODIES), "seeds": str(SEEDS), "minutes": f"{minutes:.0f}"}
 
 
 if __name__ == "__main__":
-    if sys.argv[1:] not in ([], ["--keep"]):
-        raise SystemExit(__doc__)
-    if not sys.argv[1:]:
-        RESULTS.write_text(json.dumps({"press": press(), "heaps": heaps()}) + "\n")
-    make_page(json.loads(RESULTS.read_text()))
+    STUDY.main(lambda: {"press": press(), "heaps": heaps()}, make_page)

@@ -7,21 +7,15 @@ QUICK=1 in the environment takes smaller beds and shorter runs.
 
 import json
 import os
-import subprocess
 import sys
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 
-FOLDER = Path(__file__).resolve().parent
-ROOT = FOLDER.parent.parent
-BUILD = Path(os.environ.get("SCREE_BUILD_DIR", ROOT / "build" / "release"))
-RESULTS = FOLDER / "results.json"
-QUICK = os.environ.get("QUICK") == "1"
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+from study import PROGRAM, QUICK, ROOT, SINGLE_PROGRAM, Study, build, output_of, plt, table  # noqa: E402
+
+STUDY = Study(__file__)
 STAGES = ["search", "contacts", "history", "forces", "gather", "work"]
 # Bilock (2020): one V100; bytes and seconds of a step
 THESIS_MEMORY = {1e6: 4.0e9, 1e7: 20.6e9}
@@ -33,18 +27,12 @@ FALL_STEPS = 5000 if QUICK else 20000
 SKINS = ["0.02", "0.1", "0.3", "auto"]
 
 
-def run(command, **options):
-    print("+", " ".join(str(part) for part in command), flush=True)
-    return subprocess.run([str(part) for part in command], check=True, cwd=ROOT, **options)
+def bench(name, *options, program=PROGRAM):
+    return json.loads(output_of([program, "bench", name, *options, "--json", "-"], cwd=ROOT,
+                                env=dict(os.environ, OMP_WAIT_POLICY="passive")))
 
 
-def bench(name, *options, program="scree"):
-    result = run([BUILD / program, "bench", name, *options, "--json", "-"], capture_output=True, text=True,
-                 env=dict(os.environ, OMP_WAIT_POLICY="passive"))
-    return json.loads(result.stdout)
-
-
-def scene(*overrides, program="scree", parts=30):
+def scene(*overrides, program=PROGRAM, parts=30):
     options = ["--scene", SCENE, "--steps", FALL_STEPS, "--parts", parts]
     for override in [*FALL, *overrides]:
         options += ["--set", override]
@@ -52,10 +40,9 @@ def scene(*overrides, program="scree", parts=30):
 
 
 def compute():
-    if "SCREE_BUILD_DIR" not in os.environ:
-        run(["cmake", "--build", BUILD, "--target", "scree_program", "scree_single_program"], capture_output=True)
+    build("scree_program", "scree_single_program")
     bed = ["--particles", 1000 if QUICK else 2000, "--repetitions", 3 if QUICK else 4]
-    single = dict(program="scree_single")
+    single = dict(program=SINGLE_PROGRAM)
     results = {"quick": QUICK, "packing": bench("packing", *bed), "fall": scene()}
     results["machine"] = results["packing"]["machine"]
     results["savings"] = bench("packing", "--shape", "schoenhardt", "--savings", *bed)
@@ -73,13 +60,12 @@ def compute():
     sizes = [3000, 10000] if QUICK else [10000, 100000, 1000000]
     results["memory"] = [bench("packing", "--shape", "schoenhardt", "--particles", n, "--steps", 2, "--repetitions", 1,
                                "--search-every", 2)["cases"][0] for n in sizes]
-    RESULTS.write_text(json.dumps(results, indent=1) + "\n")
+    return results
 
 
 def save(figure, name, results):
     figure.suptitle(results["machine"]["processor"] + ", one thread" * (name != "threads.png"), fontsize=8, color="0.4")
-    figure.savefig(FOLDER / name, dpi=110)
-    plt.close(figure)
+    STUDY.save(figure, name, dpi=110)
 
 
 def plot_fall(results):
@@ -151,11 +137,6 @@ def plot_threads(results):
     save(figure, "threads.png", results)
 
 
-def table(head, rows):
-    text = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
-    return "\n".join(text + ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows])
-
-
 def packing_table(results):
     cases = results["packing"]["cases"]
     sphere = cases[-1]["core_us_per_contact"]
@@ -214,7 +195,7 @@ def make_page(results):
         plot(results)
     machine = results["machine"]
     rig = results["rig"]["cases"]
-    texts = {
+    return {
         "machine": f"{machine['processor']} (virtual, {machine['processors']} processors, other work beside it), "
                    f"{machine['compiler']}" + (", QUICK=1: small beds, short runs" if results["quick"] else "") + results.get("remark", ""),
         "packing": packing_table(results),
@@ -228,16 +209,7 @@ def make_page(results):
         "rig_particles": str(rig[0]["particles"]),
         "rig_steps": str(rig[0]["steps"]),
     }
-    page = (FOLDER / "page.md").read_text()
-    for name, text in texts.items():
-        page = page.replace("{{" + name + "}}", text)
-    assert "{{" not in page
-    (FOLDER / "README.md").write_text(page)
 
 
 if __name__ == "__main__":
-    if sys.argv[1:] not in ([], ["--keep"]):
-        raise SystemExit(__doc__)
-    if not sys.argv[1:]:
-        compute()
-    make_page(json.loads(RESULTS.read_text()))
+    STUDY.main(compute, make_page)

@@ -1,38 +1,29 @@
 """A free asymmetric top over a million turns, against Jacobi's closed form: makes README.md and its plots.
 
 Usage: python run.py [--keep]
-  --keep   plots and page again from results.jsonl, without computing anything
+  --keep   plots and page again from results.json, without computing anything
 QUICK=1 in the environment takes ten thousand turns.
 """
 
 import json
 import math
-import os
-import subprocess
 import sys
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 from scipy.special import ellipk
 
-FOLDER = Path(__file__).resolve().parent
-ROOT = FOLDER.parent.parent
-BUILD = ROOT / "build" / "release"
-RESULTS = FOLDER / "results.jsonl"
-TURNS = 10_000 if os.environ.get("QUICK") == "1" else 1_000_000
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+from study import BUILD, QUICK, Study, build, output_of, plt, table  # noqa: E402
+
+STUDY = Study(__file__)
+TURNS = 10_000 if QUICK else 1_000_000
 INERTIA, START = (1.0, 2.0, 3.0), (0.05, 1.0, 0.02)  # as in rotation_study.c
 STYLE = {"scree": "C0o-", "forward Euler": "C3s-"}
 
 
 def compute():
-    for command in (["cmake", "--preset", "release", "--log-level=WARNING"],
-                    ["cmake", "--build", BUILD, "--target", "rotation_study"]):
-        subprocess.run([str(part) for part in command], check=True, cwd=BUILD.resolve().parent.parent)
-    program = [str(BUILD / "studies/rotation_study"), str(TURNS)]
-    RESULTS.write_text(subprocess.run(program, check=True, capture_output=True, text=True).stdout)
+    build("rotation_study")
+    return {"lines": [json.loads(line) for line in output_of([BUILD / "studies/rotation_study", TURNS]).splitlines()]}
 
 
 def closed_form():
@@ -43,11 +34,6 @@ def closed_form():
     rate = math.sqrt((c - b) * (momentum2 - energy2 * a) / (a * b * c))
     m = (b - a) * (energy2 * c - momentum2) / ((c - b) * (momentum2 - energy2 * a))
     return 4 * ellipk(m) / rate
-
-
-def save(figure, name):
-    figure.savefig(FOLDER / name, dpi=130)
-    plt.close(figure)
 
 
 def orders(lines, exact):
@@ -62,16 +48,15 @@ def orders(lines, exact):
         right.loglog(steps, [x["energy_error"] for x in chosen], style, ms=4, label=method)
         for k, x in enumerate(chosen):
             order = f"{math.log2(errors[k - 1] / errors[k]):.3f}" if k else ""
-            rows.append(f"| {method} | {steps[k]} | {x['period']:.9g} | {errors[k]:.2e} | {order} | {x['energy_error']:.2e} |")
+            rows.append([method, steps[k], f"{x['period']:.9g}", f"{errors[k]:.2e}", order, f"{x['energy_error']:.2e}"])
     left.set(ylabel="relative error of the flip period")
     right.set(ylabel="largest relative error of the energy, 4 flips")
     for ax in (left, right):
         ax.set(xlabel="steps per turn")
         ax.grid(alpha=0.3, which="both")
         ax.legend()
-    save(figure, "orders.png")
-    head = "| method | steps per turn | period [s] | relative error | order | largest error of the energy |\n|---|---|---|---|---|---|\n"
-    return head + "\n".join(rows)
+    STUDY.save(figure, "orders.png")
+    return table(["method", "steps per turn", "period [s]", "relative error", "order", "largest error of the energy"], rows)
 
 
 def long_runs(lines):
@@ -82,33 +67,26 @@ def long_runs(lines):
     ax.set(xlabel="turns", ylabel="largest relative error of the energy so far")
     ax.grid(alpha=0.3)
     ax.legend()
-    save(figure, "long.png")
+    STUDY.save(figure, "long.png")
     ends = {x["method"] + str(x["steps_per_turn"]): x for x in lines if x["part"] == "long"}
     own = ends["scree50"]
     lengths = max(abs(x["length_error"]) for x in lines if x["part"] == "long" and x["method"] == "scree")
     return own, ends["forward Euler50"], ends["forward Euler5000"], lengths
 
 
-def make_page():
-    lines = [json.loads(line) for line in RESULTS.read_text().splitlines()]
+def make_page(results):
+    lines = results["lines"]
     exact = closed_form()
     rows = orders(lines, exact)
     own, coarse, fine, lengths = long_runs(lines)
-    page = (FOLDER / "page.md").read_text()
-    for name, text in {
+    return {
         "exact": f"{exact:.10g}", "orders": rows, "turns": f"{own['turns']:.0f}", "worst": f"{own['worst']:.2e}",
         "worst_of_four": f"{next(x['worst'] for x in lines if x['part'] == 'long' and x['turns'] > 100):.2e}",
         "length": f"{lengths:.1e}", "coarse_turns": f"{coarse['turns']:.0f}", "coarse": f"{coarse['worst']:.2f}",
         "fine_turns": f"{fine['turns']:.0f}", "fine": f"{fine['worst']:.2f}",
         "same": "not one bit" if all(x["same_momentum"] for x in lines if x["part"] == "long") else "A BIT",
-    }.items():
-        page = page.replace("{{" + name + "}}", text)
-    (FOLDER / "README.md").write_text(page)
+    }
 
 
 if __name__ == "__main__":
-    if sys.argv[1:] not in ([], ["--keep"]):
-        raise SystemExit(__doc__)
-    if not sys.argv[1:]:
-        compute()
-    make_page()
+    STUDY.main(compute, make_page)

@@ -2,39 +2,25 @@
 
 Usage: python run.py [--keep]
   --keep   plots and page again from results.json, without computing anything
-QUICK=1 in the environment takes one start of each scene and fewer settings. A study that was broken off goes on where it
-stopped. SCREE_PROGRAM and SCREE_SINGLE_PROGRAM in the environment name other programs than scree and scree_single of build/release.
+QUICK=1 in the environment takes one start of each scene and fewer settings. A study that was broken off goes on where it stopped.
 """
 
-import json
 import math
-import os
 import re
 import subprocess
 import sys
 from pathlib import Path
 
 import h5py
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import FixedLocator, NullFormatter
 
-FOLDER = Path(__file__).resolve().parent
-ROOT = FOLDER.parent.parent
-sys.path[:0] = [str(ROOT / "tools"), str(FOLDER)]
-from ensemble import Ensemble  # noqa: E402
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+from study import PROGRAM, QUICK, SINGLE_PROGRAM, Study, build, plt, table, write_scene  # noqa: E402
 from run_folder import Run  # noqa: E402
-from scenes import RIG, collisions, flow, packing, write  # noqa: E402
+from scenes import RIG, collisions, flow, packing  # noqa: E402
 
-BUILD = ROOT / "build" / "release"
-PROGRAM = Path(os.environ.get("SCREE_PROGRAM", BUILD / "scree"))
-SINGLE = Path(os.environ.get("SCREE_SINGLE_PROGRAM", BUILD / "scree_single"))
-QUICK = os.environ.get("QUICK") == "1"
-RUNS = ROOT / "runs" / ("speed_against_error_quick" if QUICK else "speed_against_error")
-RESULTS = FOLDER / "results.json"
+STUDY = Study(__file__)
 EARLY = 0.25  # time at which positions in the packing are compared [s]
 BASE = ("time step", "0.5")
 FINEST = {"collisions": 64, "packing": 16, "flow": 4}  # finest step: 1/this of the critical one
@@ -46,7 +32,7 @@ def settings(scene):
     fractions = [1 / FINEST[scene], 1 / 8, 1 / 4, 1 / 2, 1, 1.5, 2]
     fractions = [f for f in sorted(set(fractions)) if f >= fractions[0] and not (QUICK and f in (1 / 8, 1.5))]
     rows = [("time step", f"{f:g}", f, [], 40, PROGRAM) for f in fractions]
-    rows += [("single precision", f"{f:g}", f, [], 40, SINGLE) for f in fractions
+    rows += [("single precision", f"{f:g}", f, [], 40, SINGLE_PROGRAM) for f in fractions
              if f == 1 / 2 or (f == 1 / 8 and scene != "flow")]
     triangles = [10, 150] if scene == "flow" or QUICK else [10, 20, 100, 300, 1000]
     rows += [("triangles", str(n), 0.5, [], n, PROGRAM) for n in triangles]
@@ -60,10 +46,10 @@ MAKERS = {"collisions": collisions, "packing": packing, "flow": flow}
 
 def made(scene, seed, triangles):
     """Path of the scene, written once."""
-    path = RUNS / scene / f"{seed}_{triangles}.yaml"
+    path = STUDY.runs / scene / f"{seed}_{triangles}.yaml"
     if not path.exists():
         path.parent.mkdir(parents=True, exist_ok=True)
-        write(path, MAKERS[scene](seed, triangles, (PROGRAM, path.parent)))
+        write_scene(path, MAKERS[scene](seed, triangles, (PROGRAM, path.parent)))
     return path
 
 
@@ -79,10 +65,7 @@ def run_one(scene, seed, setting, critical, end=None):
     path = made(scene, seed, triangles)
     name = f"{axis}_{value}_{seed}".replace(" ", "_") + (f"_to_{end}" if end else "")
     texts = [*texts, f"time.step={fraction * critical:.6g}", *([f"time.end={end}"] if end else [])]
-    ensemble = Ensemble(path, RUNS / scene / name, [], texts, program)
-    if ensemble.run(jobs=1):
-        raise SystemExit(f"{ensemble.members[0].folder} did not finish; see messages.txt there")
-    return ensemble.members[0]
+    return STUDY.run(path, f"{scene}/{name}", texts, program)
 
 
 def state(member):
@@ -113,9 +96,8 @@ def is_wanted(scene, setting, seed):
 
 
 def compute():
-    if "SCREE_SINGLE_PROGRAM" not in os.environ:
-        subprocess.run(["cmake", "--build", BUILD, "--target", "scree_single_program"], check=True)
-    results = {"program": version()}
+    build("scree_program", "scree_single_program")
+    results = {}
     for scene in MAKERS:
         critical = critical_step(made(scene, 1, 40))
         results[scene] = {"critical": critical, "runs": []}
@@ -128,11 +110,6 @@ def compute():
                     results[scene]["runs"].append({"axis": setting[0], "value": setting[1], "seed": seed}
                                                   | measure(scene, member, early))
     return summarise(results)
-
-
-def version():
-    commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=BUILD.resolve(), capture_output=True, text=True)
-    return f"commit {commit.stdout.strip() or 'unknown'}"
 
 
 def distances(first, second):
@@ -248,20 +225,15 @@ def plot(results, name, panels):
         draw(ax, results, panel)
     axes[0][0].set_ylabel("processor time over that of the default")
     axes[0][-1].legend(fontsize=8)
-    figure.savefig(FOLDER / name, dpi=130)
-    plt.close(figure)
+    STUDY.save(figure, name)
 
 
-def table(results, panels):
+def errors_table(results, panels):
     """One row per setting; of several panels of a scene, the errors beside each other."""
     columns = [points(results, panel) for panel in panels]
     head = ["setting", "value", *(f"error of {MEASURES[panel][3]}" for panel in panels), "time", "bits of the default"]
-    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
-    for rows in zip(*columns, strict=True):
-        errors = [number(row) for row in rows]
-        lines.append("| " + " | ".join([rows[0]["axis"], rows[0]["value"], *errors, f"{rows[0]['time']:.2f}",
-                                        "yes" if rows[0]["as_base"] else ""]) + " |")
-    return "\n".join(lines)
+    return table(head, [[rows[0]["axis"], rows[0]["value"], *(number(row) for row in rows), f"{rows[0]['time']:.2f}",
+                         "yes" if rows[0]["as_base"] else ""] for rows in zip(*columns, strict=True)])
 
 
 def number(row):
@@ -283,21 +255,14 @@ def make_page(results):
     plot(results, "flow.png", ["flow"])
     seconds = sum(run["seconds"] for scene in MAKERS for run in results[scene]["runs"]
                   if (run["axis"], run["value"]) != ("triangles", "40"))
-    texts = {"collisions": table(results, ["collisions"]), "packing": table(results, ["packing_early", "packing", "packing_contacts"]),
-             "flow": table(results, ["flow"]), "minutes": f"{seconds / 60:.0f}", "program": results["program"],
+    texts = {"collisions": errors_table(results, ["collisions"]), "packing": errors_table(results, ["packing_early", "packing", "packing_contacts"]),
+             "flow": errors_table(results, ["flow"]), "minutes": f"{seconds / 60:.0f}",
              "early": f"{EARLY:g}"} | {
         f"noise_{panel}": percent(noise(results, panel)) for panel in ("packing", "packing_contacts", "flow")}
     texts |= {f"seeds_{scene}": str(max(run["seed"] for run in results[scene]["runs"])) for scene in MAKERS}
     texts |= {f"step_{scene}": f"{results[scene]['critical']:.2e}" for scene in MAKERS}
-    page = (FOLDER / "page.md").read_text()
-    for name, text in texts.items():
-        page = page.replace("{{" + name + "}}", text)
-    (FOLDER / "README.md").write_text(page)
+    return texts
 
 
 if __name__ == "__main__":
-    if sys.argv[1:] not in ([], ["--keep"]):
-        raise SystemExit(__doc__)
-    if not sys.argv[1:]:
-        RESULTS.write_text(json.dumps(compute(), indent=0) + "\n")
-    make_page(json.loads(RESULTS.read_text()))
+    STUDY.main(compute, make_page)

@@ -1,6 +1,5 @@
 """The three scenes of the study, as dictionaries; YAML reads JSON, so that is how they are written."""
 
-import json
 import math
 import random
 import re
@@ -80,8 +79,3 @@ def flow(seed, triangles, maker):
     scene["shapes"][0] = rock(maker, triangles, 0.01, ROCK_SEED)
     scene["particles"][0]["seed"] = seed
     return scene | {"output": {"series": 0.005, "frames": 0, "checkpoint": 1}}
-
-
-def write(path, content):
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(json.dumps(content, indent=1) + "\n")

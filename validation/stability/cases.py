@@ -1,6 +1,5 @@
-"""The hard cases of the stability study, as scenes; YAML reads JSON, so that is how they are written."""
+"""The hard cases of the stability study, as scenes."""
 
-import json
 import math
 
 STIFFNESS = 1e7
@@ -120,8 +119,3 @@ def rests():
         [FLOOR, {"name": "box", "shape": "box", "material": "stone"}])
     chosen = {name: cases()[name] for name in ("tower", "wedge")}
     return chosen | {"bed": ("twenty rocks in a box", bed)}
-
-
-def write(path, content):
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(json.dumps(content, indent=1) + "\n")

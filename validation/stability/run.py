@@ -5,31 +5,19 @@ Usage: python run.py [--keep]
 QUICK=1 in the environment rests for a twentieth of the steps. A study that was broken off goes on where it stopped.
 """
 
-import json
-import os
 import re
-import subprocess
 import sys
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import NullFormatter
 
-FOLDER = Path(__file__).resolve().parent
-ROOT = FOLDER.parent.parent
-sys.path[:0] = [str(ROOT / "tools"), str(FOLDER)]
-from cases import cases, rests, write  # noqa: E402
-from ensemble import Ensemble  # noqa: E402
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+from study import PROGRAM, QUICK, Study, output_of, plt, table, write_scene  # noqa: E402
+from cases import cases, rests  # noqa: E402
 from run_folder import Run  # noqa: E402
 
-PROGRAM = ROOT / "build" / "release" / "scree"
-QUICK = os.environ.get("QUICK") == "1"
-RUNS = ROOT / "runs" / ("stability_quick" if QUICK else "stability")
-RESULTS = FOLDER / "results.json"
+STUDY = Study(__file__)
 FRACTIONS = (0.05, 0.1, 0.2, 0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 2.8)
 REST_STEPS = 50_000 if QUICK else 1_000_000
 BAND = 0.01  # share of the energy that may appear
@@ -37,17 +25,15 @@ BAND = 0.01  # share of the energy that may appear
 
 def predicted_step(path):
     """Critical step that scree check tells of a scene."""
-    done = subprocess.run([PROGRAM, "check", path], check=True, capture_output=True, text=True)
-    return float(re.search(r"of the critical step of (\S+) s", done.stdout)[1])
+    return float(re.search(r"of the critical step of (\S+) s", output_of([PROGRAM, "check", path]))[1])
 
 
 def scan(name, scene):
     """The case at each fraction of the predicted step; a run that failed is None."""
-    path = RUNS / name / "scene.yaml"
-    write(path, scene)
+    path = write_scene(STUDY.runs / name / "scene.yaml", scene)
     critical = predicted_step(path)
     steps = [f"{fraction * critical:.6g}" for fraction in FRACTIONS]
-    ensemble = Ensemble(path, RUNS / name, [(["time.step"], steps)], program=PROGRAM)
+    ensemble = STUDY.ensemble(path, name, [(["time.step"], steps)])
     ensemble.run()
     return {"critical": critical, "runs": [measure(member) for member in ensemble.members]}
 
@@ -64,7 +50,7 @@ def measure(member):
         "balance": abs(summary["energy_error"]),
         "measured": summary["counters"]["smallest_critical_step"],
         "indentation": summary["counters"]["largest_indentation"],
-        "seconds": summary["wall_seconds"], "steps": summary["num_steps"],
+        "seconds": summary["processor_seconds"], "steps": summary["num_steps"],
     }
 
 
@@ -84,15 +70,12 @@ def largest_stable(result):
 
 def rest(name, scene):
     """A case over a million steps of the automatic size, with 1000 rows of its series."""
-    path = RUNS / "rest" / f"{name}.yaml"
-    step = 0.5 * predicted_step_of(path, scene)
+    path = STUDY.runs / "rest" / f"{name}.yaml"
+    step = 0.5 * predicted_step(write_scene(path, scene))
     end = REST_STEPS * step
     changed = scene | {"time": {"end": end, "step": step}, "output": {"series": end / 1000, "frames": 0, "checkpoint": end / 20}}
-    write(path, changed)
-    ensemble = Ensemble(path, RUNS / "rest" / name, [], program=PROGRAM)
-    if ensemble.run():
-        raise SystemExit(f"{name} did not finish: see {ensemble.members[0].folder}/messages.txt")
-    series, summary = Run(ensemble.members[0].folder).series(), ensemble.members[0].summary()
+    member = STUDY.run(write_scene(path, changed), f"rest/{name}")
+    series, summary = Run(member.folder).series(), member.summary()
     moving = series["kinetic"] + series["rotational"]
     half = len(moving) // 2
     scale = summary["mass"] * 9.81 * 0.1
@@ -100,14 +83,9 @@ def rest(name, scene):
         "step": series["step"].tolist(), "moving": (moving / scale).tolist(),
         "potential": ((series["potential"] - series["potential"][-1]) / scale).tolist(),
         "drift": float(abs(series["potential"][-1] - series["potential"][half]) / (summary["mass"] * 9.81)),
-        "kinetic": float(moving[half:].max() / scale), "seconds": summary["wall_seconds"],
+        "kinetic": float(moving[half:].max() / scale), "seconds": summary["processor_seconds"],
         "contacts": summary["counters"]["contacts"], "particles": summary["particles"],
     }
-
-
-def predicted_step_of(path, scene):
-    write(path, scene)
-    return predicted_step(path)
 
 
 def compute():
@@ -118,12 +96,7 @@ def compute():
     for name, (_, scene) in rests().items():
         print(f"== {name} at rest", flush=True)
         results["rest"][name] = rest(name, scene)
-    RESULTS.write_text(json.dumps(results) + "\n")
-
-
-def save(figure, name):
-    figure.savefig(FOLDER / name, dpi=130)
-    plt.close(figure)
+    return results
 
 
 def plot_scan(results):
@@ -144,7 +117,7 @@ def plot_scan(results):
         ax.set_xticks(FRACTIONS, [f"{f:g}" for f in FRACTIONS])
         ax.grid(alpha=0.3)
     figure.legend(*axes[0].get_legend_handles_labels(), fontsize=8, loc="outside right center")
-    save(figure, "time_step.png")
+    STUDY.save(figure, "time_step.png")
 
 
 def plot_rest(results):
@@ -158,12 +131,7 @@ def plot_rest(results):
     axes[0].legend()
     for ax in axes:
         ax.grid(alpha=0.3)
-    save(figure, "rest.png")
-
-
-def table(head, rows):
-    text = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
-    return "\n".join(text + ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows])
+    STUDY.save(figure, "rest.png")
 
 
 def stable_texts(result):
@@ -197,15 +165,10 @@ def rest_table(results):
 def make_page(results):
     plot_scan(results)
     plot_rest(results)
-    page = (FOLDER / "page.md").read_text()
-    for name, text in {"cases": cases_table(results), "rest": rest_table(results)}.items():
-        page = page.replace("{{" + name + "}}", text)
-    (FOLDER / "README.md").write_text(page)
+    seconds = sum(result["seconds"] for result in results["rest"].values())
+    seconds += sum(run["seconds"] for result in results["cases"].values() for run in result["runs"] if run)
+    return {"cases": cases_table(results), "rest": rest_table(results), "minutes": f"{seconds / 60:.0f}"}
 
 
 if __name__ == "__main__":
-    if sys.argv[1:] not in ([], ["--keep"]):
-        raise SystemExit(__doc__)
-    if not sys.argv[1:]:
-        compute()
-    make_page(json.loads(RESULTS.read_text()))
+    STUDY.main(compute, make_page)

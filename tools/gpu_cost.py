@@ -18,7 +18,7 @@ PAGE = ROOT / "docs" / "theory" / "gpu_cost.md"
 
 # numbers of reals and of other bytes of each type
 TYPES = {"real": (1, 0), "vec3": (3, 0), "quat": (4, 0), "pose": (8, 0), "int32": (0, 4), "int64": (0, 8), "uint8": (0, 1),
-         "pair": (0, 8), "memory": (4, 8), "sphere": (4, 0)}
+         "pair": (0, 8), "moving": (7, 8), "memory": (4, 8), "sphere": (4, 0)}
 SECTOR = 32  # bytes, the least that a GPU moves
 
 # Kernels of the steady step of polyhedra, one launch each. `own`: arrays at the index itself, each byte once. `far`: arrays
@@ -26,8 +26,8 @@ SECTOR = 32  # bytes, the least that a GPU moves
 # lower id; pairs are sorted by it, so they come once per particle. instructions: of the processor per index, counted.
 KERNELS = [
     ("scree_predict", "particle", "src/dynamics/integrator_kernel.h",
-     dict(own="mass:real force:vec3 torque:vec3 velocity:vec3*3 angular_momentum:vec3*2 position:vec3*2 orientation:quat*2 "
-              "inertia:vec3 scale:real pose:pose angular_velocity:vec3"), 1021),
+     dict(own="mass:real force:vec3 torque:vec3 velocity:vec3*2 angular_momentum:vec3*2 position:vec3*2 orientation:quat*2 "
+              "inertia:vec3 scale:real pose:pose moving:real*6"), 1021),
     ("scree_travel", "particle", "src/dynamics/neighbour_kernel.h",
      dict(own="shape:int32 pose:pose searched_pose:pose last_pose:pose*2 travel:real*2"), 320),
     ("scree_mesh_apart", "pair", "src/contact/mesh_pairs_kernel.h",
@@ -46,19 +46,19 @@ KERNELS = [
               "tangential_stiffness:real*2 torsion:real*2 rolling_moment:vec3*2 spring_energy:real*2 elastic_energy:real*2 "
               "normal_force:vec3 tangential_force:vec3 elastic_force:real moment:vec3 elastic_work:real spring_work:real "
               "is_slipping:uint8 is_turning:uint8",
-          near="pose:pose velocity:vec3 angular_velocity:vec3 inverse_mass:real material:int32",
-          far="pose:pose velocity:vec3 angular_velocity:vec3 inverse_mass:real material:int32"), 589),
+          near="pose:pose moving:moving",
+          far="pose:pose moving:moving"), 589),
     ("scree_gather", "particle", "src/forces/gather_kernel.h", dict(own="row_begin:int64 mass:real force:vec3 torque:vec3 pose:pose"), 59),
     ("scree_gather, per contact and side", "side", "src/forces/gather_kernel.h",
      dict(own="row_pairs:int32", far="first_of_pair:int64 bodies:pair normal_force:vec3 tangential_force:vec3 arm:vec3 moment:vec3 pose:pose"), 52),
     ("scree_correct", "particle", "src/dynamics/integrator_kernel.h",
-     dict(own="mass:real force:vec3 torque:vec3 velocity:vec3*3 angular_momentum:vec3*2 inertia:vec3 orientation:quat angular_velocity:vec3"),
+     dict(own="mass:real force:vec3 torque:vec3 velocity:vec3*2 angular_momentum:vec3*2 inertia:vec3 orientation:quat moving:real*6"),
      185),
     ("scree_work", "contact", "src/forces/work_kernel.h",
      dict(own="bodies:pair arm:vec3 normal:vec3 elastic_force:real normal_force:vec3 tangential_force:vec3 moment:vec3 "
               "elastic_work:real spring_work:real is_slipping:uint8 is_turning:uint8 tangential_stiffness:real",
-          near="pose:pose velocity:vec3 angular_velocity:vec3 inverse_mass:real inertia:vec3 material:int32",
-          far="pose:pose velocity:vec3 angular_velocity:vec3 inverse_mass:real inertia:vec3 material:int32"), 456),
+          near="pose:pose moving:moving inertia:vec3",
+          far="pose:pose moving:moving inertia:vec3"), 456),
 ]
 
 # In a bed of spheres these take the place of the kernels of meshes, and contacts act in points: nothing has moments.

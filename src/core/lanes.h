@@ -36,6 +36,11 @@ static inline void scree_lanes_set(scree_lanes_vec3 *lanes, int lane, scree_vec3
     lanes->z[lane] = v.z;
 }
 
+static inline void scree_lanes_copy(scree_real *to, const scree_real *from)
+{
+    for (int l = 0; l < SCREE_LANES; ++l) to[l] = from[l];
+}
+
 static inline scree_vec3 scree_lanes_get(const scree_lanes_vec3 *lanes, int lane)
 {
     return scree_vec3_make(lanes->x[lane], lanes->y[lane], lanes->z[lane]);

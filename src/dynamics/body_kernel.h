@@ -4,6 +4,7 @@
 #define SCREE_BODY_KERNEL_H
 
 #include "dynamics/particles.h"
+#include "forces/moving_body.h"
 
 /// Walls of one launch: they travel with its arguments, so that nobody has to wait for a copy.
 #define SCREE_WALLS_AT_ONCE 8
@@ -17,9 +18,8 @@ typedef struct scree_wall_motion
 
 typedef struct scree_body_arrays
 {
-    scree_pose *pose;             ///< (num_bodies)
-    scree_vec3 *velocity;         ///< (num_bodies)
-    scree_vec3 *angular_velocity; ///< (num_bodies)
+    scree_pose *pose;          ///< (num_bodies)
+    scree_moving_body *moving; ///< (num_bodies) but for what does not change
 } scree_body_arrays;
 
 typedef struct scree_place_walls_args
@@ -33,8 +33,8 @@ typedef struct scree_place_walls_args
 SCREE_FN void scree_place_walls_at(scree_place_walls_args a, int64_t k)
 {
     a.bodies.pose[a.first + k] = a.walls[k].pose;
-    a.bodies.velocity[a.first + k] = a.walls[k].velocity;
-    a.bodies.angular_velocity[a.first + k] = a.walls[k].angular_velocity;
+    a.bodies.moving[a.first + k].velocity = a.walls[k].velocity;
+    a.bodies.moving[a.first + k].angular_velocity = a.walls[k].angular_velocity;
 }
 
 typedef struct scree_place_particles_args
@@ -49,8 +49,8 @@ SCREE_FN void scree_place_particles_at(scree_place_particles_args a, int64_t i)
     a.bodies.pose[i].position = a.particles.position[i];
     a.bodies.pose[i].orientation = a.particles.orientation[i];
     a.bodies.pose[i].scale = a.particles.scale[i];
-    a.bodies.velocity[i] = a.particles.velocity[i];
-    a.bodies.angular_velocity[i] =
+    a.bodies.moving[i].velocity = a.particles.velocity[i];
+    a.bodies.moving[i].angular_velocity =
         scree_angular_velocity(a.particles.angular_momentum[i], a.particles.inertia[i], a.particles.orientation[i]);
 }
 

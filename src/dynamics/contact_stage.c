@@ -91,11 +91,8 @@ scree_body_motion scree_step_body_motion(const scree_step_buffers *buffers)
 {
     scree_body_motion motion;
     motion.pose = buffers->pose;
-    motion.velocity = buffers->velocity;
-    motion.angular_velocity = buffers->angular_velocity;
-    motion.inverse_mass = buffers->inverse_mass;
+    motion.moving = buffers->moving;
     motion.inverse_radius = buffers->inverse_radius;
-    motion.material = buffers->material;
     return motion;
 }
 

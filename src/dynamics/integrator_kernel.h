@@ -18,9 +18,8 @@ typedef struct scree_predict_args
 {
     scree_particles particles;
     scree_real time_step;
-    scree_pose *pose;             ///< (num_particles) out: pose at the end of the step
-    scree_vec3 *velocity;         ///< (num_particles) out: estimate for the end of the step, for damping
-    scree_vec3 *angular_velocity; ///< (num_particles) out: likewise
+    scree_pose *pose;          ///< (num_particles) out: pose at the end of the step
+    scree_moving_body *moving; ///< (num_particles) out: estimates of the velocities at the end of the step, for damping
 } scree_predict_args;
 
 /// The Cayley map: (1 + a)(1 - a)^-1 q = (1 - |a|^2 + 2 a)/(1 + |a|^2) q; normalising takes care of the denominator
@@ -86,17 +85,16 @@ SCREE_FN void scree_predict_at(scree_predict_args a, int64_t i)
     a.pose[i].position = position;
     a.pose[i].orientation = orientation;
     a.pose[i].scale = a.particles.scale[i];
-    a.velocity[i] = scree_vec3_add_scaled(velocity, force, half_over_mass);
-    a.angular_velocity[i] = angular_velocity;
+    a.moving[i].velocity = scree_vec3_add_scaled(velocity, force, half_over_mass);
+    a.moving[i].angular_velocity = angular_velocity;
 }
 
 typedef struct scree_correct_args
 {
     scree_particles particles;
     scree_real time_step;
-    scree_vec3 *velocity;         ///< (num_particles) out: of the end of the step
-    scree_vec3 *angular_velocity; ///< (num_particles) out
-    scree_step_tally *tally;      ///< learns of a particle whose position or momentum is not finite
+    scree_moving_body *moving; ///< (num_particles) out: velocities at the end of the step
+    scree_step_tally *tally;   ///< learns of a particle whose position or momentum is not finite
 } scree_correct_args;
 
 /// Second half kick of particle i.
@@ -109,10 +107,10 @@ SCREE_FN void scree_correct_at(scree_correct_args a, int64_t i)
     const scree_vec3 x = a.particles.position[i];
     a.particles.velocity[i] = velocity;
     a.particles.angular_momentum[i] = momentum;
-    a.velocity[i] = velocity;
+    a.moving[i].velocity = velocity;
     const scree_real sum = x.x + x.y + x.z + momentum.x + momentum.y + momentum.z;
     if (!(sum - sum == 0)) scree_atomic_max(&a.tally->num_from_unstable, (scree_real)(a.particles.num_particles - i));
-    a.angular_velocity[i] = scree_angular_velocity(momentum, a.particles.inertia[i], a.particles.orientation[i]);
+    a.moving[i].angular_velocity = scree_angular_velocity(momentum, a.particles.inertia[i], a.particles.orientation[i]);
 }
 
 #endif

@@ -34,7 +34,7 @@ scree_device_memory scree_device_memory_of(const scree_simulation *simulation)
     }
     const size_t state =
         5 * sizeof(scree_vec3) + sizeof(scree_quat) + 2 * sizeof(scree_real) + sizeof(scree_vec3) + 3 * sizeof(int32_t);
-    const size_t body = 3 * sizeof(scree_pose) + 2 * sizeof(scree_vec3) + 3 * sizeof(scree_real) + 2 * sizeof(int32_t) +
+    const size_t body = 3 * sizeof(scree_pose) + sizeof(scree_moving_body) + 2 * sizeof(scree_real) + sizeof(int32_t) +
                         (has_spheres ? sizeof(scree_sphere) : 0);
     const size_t search = sizeof(scree_box) + sizeof(scree_vec3) + sizeof(scree_real) + 2 * sizeof(scree_lbvh_node) +
                           4 * sizeof(int32_t) + 2 * (sizeof(uint64_t) + sizeof(int32_t)) + 2 * sizeof(int32_t) +
@@ -102,12 +102,9 @@ static scree_status copy_buffers(scree_simulation *there, const scree_simulation
     b->array = copy(device, from->array, num, sizeof *b->array); \
     is_complete = is_complete && b->array != NULL;
     SCREE_COPY(pose, num_bodies)
-    SCREE_COPY(velocity, num_bodies)
-    SCREE_COPY(angular_velocity, num_bodies)
-    SCREE_COPY(inverse_mass, num_bodies)
+    SCREE_COPY(moving, num_bodies)
     SCREE_COPY(inverse_radius, num_bodies)
     SCREE_COPY(shape, num_bodies)
-    SCREE_COPY(material, num_bodies)
     SCREE_COPY(searched_pose, num_bodies)
     SCREE_COPY(last_pose, num_bodies)
     SCREE_COPY(travel, num_bodies)

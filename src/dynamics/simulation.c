@@ -10,8 +10,7 @@ void scree_predict_motion(scree_simulation *simulation)
     args.particles = simulation->particles;
     args.time_step = (scree_real)simulation->time_step;
     args.pose = simulation->buffers->pose;
-    args.velocity = simulation->buffers->velocity;
-    args.angular_velocity = simulation->buffers->angular_velocity;
+    args.moving = simulation->buffers->moving;
     scree_predict_launch_on(simulation->device, args, simulation->particles.num_particles);
 }
 
@@ -20,8 +19,7 @@ void scree_correct_motion(scree_simulation *simulation)
     scree_correct_args args;
     args.particles = simulation->particles;
     args.time_step = (scree_real)simulation->time_step;
-    args.velocity = simulation->buffers->velocity;
-    args.angular_velocity = simulation->buffers->angular_velocity;
+    args.moving = simulation->buffers->moving;
     args.tally = simulation->buffers->tally;
     scree_correct_launch_on(simulation->device, args, simulation->particles.num_particles);
 }

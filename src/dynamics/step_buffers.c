@@ -1,9 +1,11 @@
 #define _DEFAULT_SOURCE /* M_PI */
 #include "dynamics/step_buffers.h"
+#include "core/buffer.h"
 #include "dynamics/dynamics.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /// Radius of the sphere of the particle's volume.
 static double equal_volume_radius(const scree_simulation *simulation, size_t i)
@@ -19,6 +21,14 @@ static double particle_bounding_radius(const scree_simulation *simulation, size_
     return simulation->particle_shapes[particles->shape[i]].properties.bounding_radius * (double)particles->scale[i];
 }
 
+/// Zeroed memory in whole cache lines.
+static void *zeros(size_t num_bytes)
+{
+    void *memory = scree_buffer_alloc(1, num_bytes);
+    if (memory != NULL) memset(memory, 0, num_bytes);
+    return memory;
+}
+
 scree_status scree_step_buffers_create(scree_simulation *simulation)
 {
     const size_t num_particles = (size_t)simulation->particles.num_particles;
@@ -27,16 +37,13 @@ scree_status scree_step_buffers_create(scree_simulation *simulation)
     if (b == NULL) return SCREE_OUT_OF_MEMORY;
     simulation->buffers = b;
     bool is_complete = true;
-#define SCREE_ALLOCATE(array, num)                  \
-    b->array = calloc((num) + 1, sizeof *b->array); \
+#define SCREE_ALLOCATE(array, num)                    \
+    b->array = zeros(((num) + 1) * sizeof *b->array); \
     is_complete = is_complete && b->array != NULL;
     SCREE_ALLOCATE(pose, num_bodies)
-    SCREE_ALLOCATE(velocity, num_bodies)
-    SCREE_ALLOCATE(angular_velocity, num_bodies)
-    SCREE_ALLOCATE(inverse_mass, num_bodies)
+    SCREE_ALLOCATE(moving, num_bodies)
     SCREE_ALLOCATE(inverse_radius, num_bodies)
     SCREE_ALLOCATE(shape, num_bodies)
-    SCREE_ALLOCATE(material, num_bodies)
     SCREE_ALLOCATE(searched_pose, num_bodies)
     SCREE_ALLOCATE(last_pose, num_bodies)
     SCREE_ALLOCATE(travel, num_bodies)
@@ -51,17 +58,17 @@ scree_status scree_step_buffers_create(scree_simulation *simulation)
 
     for (size_t i = 0; i < num_particles; ++i)
     {
-        b->inverse_mass[i] = 1 / simulation->particles.mass[i];
+        b->moving[i].inverse_mass = 1 / simulation->particles.mass[i];
         b->inverse_radius[i] = (scree_real)(1 / equal_volume_radius(simulation, i));
         b->shape[i] = simulation->particles.shape[i];
-        b->material[i] = simulation->particles.material[i];
+        b->moving[i].material = simulation->particles.material[i];
         b->mean_radius += particle_bounding_radius(simulation, i) / (double)num_particles;
         b->has_travel |= simulation->shape_views[b->shape[i]].kind == SCREE_KIND_MESH;
     }
     for (size_t w = 0; w < num_walls; ++w)
     {
         b->shape[num_particles + w] = simulation->num_shapes + simulation->walls[w].shape;
-        b->material[num_particles + w] = simulation->walls[w].material;
+        b->moving[num_particles + w].material = simulation->walls[w].material;
         b->wall_input[w].tree = simulation->shape_views[b->shape[num_particles + w]].tree;
     }
     return SCREE_OK;
@@ -73,11 +80,8 @@ void scree_step_buffers_destroy(scree_simulation *simulation)
     if (b == NULL) return;
     scree_device *device = b->device;
     void *const arrays[] = {b->pose,
-                            b->velocity,
-                            b->angular_velocity,
-                            b->inverse_mass,
+                            b->moving,
                             b->shape,
-                            b->material,
                             b->inverse_radius,
                             b->searched_pose,
                             b->last_pose,
@@ -103,7 +107,7 @@ void scree_step_buffers_destroy(scree_simulation *simulation)
 
 static scree_body_arrays body_arrays(const scree_step_buffers *b)
 {
-    const scree_body_arrays arrays = {b->pose, b->velocity, b->angular_velocity};
+    const scree_body_arrays arrays = {b->pose, b->moving};
     return arrays;
 }
 

@@ -14,12 +14,9 @@ typedef struct scree_step_buffers
 
     // per body (num_bodies)
     scree_pose *pose;
-    scree_vec3 *velocity;
-    scree_vec3 *angular_velocity;
-    scree_real *inverse_mass;
+    scree_moving_body *moving;
     scree_real *inverse_radius;
     int32_t *shape; ///< index into shape_views
-    int32_t *material;
 
     // neighbours
     scree_pose *searched_pose; ///< (num_bodies) poses of the last search

@@ -23,7 +23,8 @@ SCREE_FN void scree_collision_at(scree_collision_args a, int64_t c)
 {
     const scree_candidate_pair pair = a.contacts.bodies[c];
     const scree_vec3 v = scree_relative_velocity(&a.bodies, pair.i, pair.j, a.contacts.arm[c]);
-    const scree_vec3 w = scree_vec3_sub(a.bodies.angular_velocity[pair.i], a.bodies.angular_velocity[pair.j]);
+    const scree_vec3 w =
+        scree_vec3_sub(a.bodies.moving[pair.i].angular_velocity, a.bodies.moving[pair.j].angular_velocity);
     const scree_vec3 moment = a.contacts.acts_in_points ? scree_vec3_zero() : a.contacts.moment[c];
     const double normal = (double)scree_vec3_dot(a.contacts.normal_force[c], v);
     const double tangential = (double)(scree_vec3_dot(a.contacts.tangential_force[c], v) + scree_vec3_dot(moment, w));

@@ -1,26 +1,62 @@
 /// \file contact_force_cpu.c
 /// Forces of contacts on the CPU. Contacts that act in points and share a law without rolling resistance, the usual
 /// ones of spheres, are worked on in groups of lanes (lanes.h); all others one by one.
-#include "core/lanes.h"
 #include "forces/forces.h"
+#include "forces/motion_lanes.h"
 
 SCREE_DEFINE_LAUNCH_ON(scree_contact_force)
 
 /// What the law reads and gives of a group.
 typedef struct scree_force_group
 {
-    scree_lanes_vec3 position_i, velocity_i, angular_velocity_i, position_j, velocity_j, angular_velocity_j;
+    scree_motion_lanes i, j;
     scree_lanes_vec3 arm, normal, spring_force;
-    scree_real volume[SCREE_LANES], indentation[SCREE_LANES], inverse_mass[SCREE_LANES];
-    scree_real tangential_stiffness[SCREE_LANES];
+    scree_real volume[SCREE_LANES], indentation[SCREE_LANES], tangential_stiffness[SCREE_LANES];
+    scree_real old_elastic_energy[SCREE_LANES], old_spring_energy[SCREE_LANES];
     scree_lanes_vec3 normal_force, tangential_force;
     scree_real elastic_force[SCREE_LANES], elastic_energy[SCREE_LANES], spring_energy[SCREE_LANES];
     scree_real slip[SCREE_LANES]; ///< 1 or 0
 } scree_force_group;
 
+static void load_history(scree_force_group *restrict g, const scree_contact_list *restrict old_list,
+                         const int64_t *restrict old_of_contact)
+{
+    // contacts mostly last, and then follow each other in both lists
+    const int64_t first = old_of_contact[0];
+    bool is_run = first >= 0;
+    for (int l = 1; l < SCREE_LANES; ++l) is_run &= old_of_contact[l] == first + l;
+    if (is_run)
+    {
+        scree_lanes_load(&g->spring_force, old_list->spring_force + first);
+        scree_lanes_copy(g->tangential_stiffness, old_list->tangential_stiffness + first);
+        scree_lanes_copy(g->old_elastic_energy, old_list->elastic_energy + first);
+        scree_lanes_copy(g->old_spring_energy, old_list->spring_energy + first);
+        return;
+    }
+    for (int l = 0; l < SCREE_LANES; ++l)
+    {
+        const int64_t old = old_of_contact[l];
+        const bool is_old = old >= 0;
+        scree_lanes_set(&g->spring_force, l, is_old ? old_list->spring_force[old] : scree_vec3_zero());
+        g->tangential_stiffness[l] = is_old ? old_list->tangential_stiffness[old] : 0;
+        g->old_elastic_energy[l] = is_old ? old_list->elastic_energy[old] : 0;
+        g->old_spring_energy[l] = is_old ? old_list->spring_energy[old] : 0;
+    }
+}
+
+static void load_group(scree_force_group *restrict g, const scree_contact_force_args *restrict a, int64_t first)
+{
+    const scree_contact_list *list = &a->contacts;
+    scree_load_motions(&g->i, &g->j, &a->bodies, list->bodies + first);
+    scree_lanes_load(&g->arm, list->arm + first);
+    scree_lanes_load(&g->normal, list->normal + first);
+    scree_lanes_copy(g->volume, list->volume + first);
+    scree_lanes_copy(g->indentation, list->indentation + first);
+    load_history(g, &a->old_contacts, a->old_of_contact + first);
+}
+
 /// The lane loop, with a law whose choices are known here.
-static inline void force_of_lanes(scree_force_group *restrict g, const scree_force_law *law, int32_t model,
-                                  scree_real time_step)
+static void law_of_lanes(scree_force_group *restrict g, const scree_force_law *law, int32_t model, scree_real time_step)
 {
     scree_force_law known = *law;
     known.model = model;
@@ -30,16 +66,12 @@ static inline void force_of_lanes(scree_force_group *restrict g, const scree_for
     known.has_attraction = false;
     for (int l = 0; l < SCREE_LANES; ++l)
     {
-        const scree_motion i = {scree_lanes_get(&g->position_i, l), scree_lanes_get(&g->velocity_i, l),
-                                scree_lanes_get(&g->angular_velocity_i, l)};
-        const scree_motion j = {scree_lanes_get(&g->position_j, l), scree_lanes_get(&g->velocity_j, l),
-                                scree_lanes_get(&g->angular_velocity_j, l)};
         scree_contact_kinematics k = {0};
         k.volume = g->volume[l];
         k.indentation = g->indentation[l];
         k.normal = scree_lanes_get(&g->normal, l);
-        k.relative_velocity = scree_velocity_between(&i, &j, scree_lanes_get(&g->arm, l));
-        k.effective_mass = 1 / g->inverse_mass[l];
+        k.relative_velocity = scree_velocity_of_lane(&g->i, &g->j, scree_lanes_get(&g->arm, l), l);
+        k.effective_mass = 1 / (g->i.inverse_mass[l] + g->j.inverse_mass[l]);
         k.time_step = time_step;
         k.spring_force = scree_lanes_get(&g->spring_force, l);
         k.tangential_stiffness = g->tangential_stiffness[l];
@@ -56,66 +88,43 @@ static inline void force_of_lanes(scree_force_group *restrict g, const scree_for
     }
 }
 
-SCREE_LANES_FUNCTION static void hertz_mindlin_of_lanes(scree_force_group *restrict g, const scree_force_law *law,
-                                                        scree_real time_step)
-{
-    force_of_lanes(g, law, SCREE_MODEL_HERTZ_MINDLIN, time_step);
-}
-
-SCREE_LANES_FUNCTION static void linear_spring_of_lanes(scree_force_group *restrict g, const scree_force_law *law,
-                                                        scree_real time_step)
-{
-    force_of_lanes(g, law, SCREE_MODEL_LINEAR_SPRING, time_step);
-}
-
-static void load_group(scree_force_group *restrict g, const scree_contact_force_args *restrict a, int64_t first)
-{
-    const scree_contact_list *list = &a->contacts, *old_list = &a->old_contacts;
-    for (int l = 0; l < SCREE_LANES; ++l)
-    {
-        const int64_t c = first + l, old = a->old_of_contact[c];
-        const scree_candidate_pair pair = list->bodies[c];
-        scree_lanes_set(&g->position_i, l, a->bodies.pose[pair.i].position);
-        scree_lanes_set(&g->velocity_i, l, a->bodies.velocity[pair.i]);
-        scree_lanes_set(&g->angular_velocity_i, l, a->bodies.angular_velocity[pair.i]);
-        scree_lanes_set(&g->position_j, l, a->bodies.pose[pair.j].position);
-        scree_lanes_set(&g->velocity_j, l, a->bodies.velocity[pair.j]);
-        scree_lanes_set(&g->angular_velocity_j, l, a->bodies.angular_velocity[pair.j]);
-        g->inverse_mass[l] = a->bodies.inverse_mass[pair.i] + a->bodies.inverse_mass[pair.j];
-        scree_lanes_set(&g->arm, l, list->arm[c]);
-        scree_lanes_set(&g->normal, l, list->normal[c]);
-        g->volume[l] = list->volume[c];
-        g->indentation[l] = list->indentation[c];
-        const bool is_old = old >= 0;
-        scree_lanes_set(&g->spring_force, l, is_old ? old_list->spring_force[old] : scree_vec3_zero());
-        g->tangential_stiffness[l] = is_old ? old_list->tangential_stiffness[old] : 0;
-        list->elastic_work[c] = is_old ? old_list->elastic_energy[old] : 0;
-        list->spring_work[c] = is_old ? old_list->spring_energy[old] : 0;
-    }
-}
-
 static void store_group(const scree_force_group *restrict g, const scree_contact_list *restrict list, int64_t first)
 {
-    for (int l = 0; l < SCREE_LANES; ++l)
-    {
-        const int64_t c = first + l;
-        list->normal_force[c] = scree_lanes_get(&g->normal_force, l);
-        list->tangential_force[c] = scree_lanes_get(&g->tangential_force, l);
-        list->spring_force[c] = scree_lanes_get(&g->spring_force, l);
-        list->elastic_force[c] = g->elastic_force[l];
-        list->is_slipping[c] = g->slip[l] > 0;
-        list->tangential_stiffness[c] = g->tangential_stiffness[l];
-        list->elastic_energy[c] = g->elastic_energy[l];
-        list->elastic_work[c] = g->elastic_energy[l] - list->elastic_work[c];
-        list->spring_energy[c] = g->spring_energy[l];
-        list->spring_work[c] = g->spring_energy[l] - list->spring_work[c];
-    }
+    scree_lanes_store(list->normal_force + first, &g->normal_force);
+    scree_lanes_store(list->tangential_force + first, &g->tangential_force);
+    scree_lanes_store(list->spring_force + first, &g->spring_force);
+    scree_lanes_copy(list->elastic_force + first, g->elastic_force);
+    scree_lanes_copy(list->tangential_stiffness + first, g->tangential_stiffness);
+    scree_lanes_copy(list->elastic_energy + first, g->elastic_energy);
+    scree_lanes_copy(list->spring_energy + first, g->spring_energy);
+    scree_real *elastic_work = list->elastic_work + first, *spring_work = list->spring_work + first;
+    for (int l = 0; l < SCREE_LANES; ++l) elastic_work[l] = g->elastic_energy[l] - g->old_elastic_energy[l];
+    for (int l = 0; l < SCREE_LANES; ++l) spring_work[l] = g->spring_energy[l] - g->old_spring_energy[l];
+    for (int l = 0; l < SCREE_LANES; ++l) list->is_slipping[first + l] = g->slip[l] > 0;
+}
+
+SCREE_LANES_FUNCTION static void hertz_mindlin_of_group(const scree_contact_force_args *a, const scree_force_law *law,
+                                                        int64_t first)
+{
+    scree_force_group g;
+    load_group(&g, a, first);
+    law_of_lanes(&g, law, SCREE_MODEL_HERTZ_MINDLIN, a->time_step);
+    store_group(&g, &a->contacts, first);
+}
+
+SCREE_LANES_FUNCTION static void linear_spring_of_group(const scree_contact_force_args *a, const scree_force_law *law,
+                                                        int64_t first)
+{
+    scree_force_group g;
+    load_group(&g, a, first);
+    law_of_lanes(&g, law, SCREE_MODEL_LINEAR_SPRING, a->time_step);
+    store_group(&g, &a->contacts, first);
 }
 
 static const scree_force_law *law_of(const scree_contact_force_args *a, int64_t c)
 {
     const scree_candidate_pair pair = a->contacts.bodies[c];
-    return a->laws + (int64_t)a->bodies.material[pair.i] * a->num_materials + a->bodies.material[pair.j];
+    return a->laws + (int64_t)a->bodies.moving[pair.i].material * a->num_materials + a->bodies.moving[pair.j].material;
 }
 
 /// The law of all contacts of a group, if it is one that lanes know; otherwise NULL.
@@ -124,7 +133,7 @@ static const scree_force_law *law_of_group(const scree_contact_force_args *a, in
     const scree_force_law *law = law_of(a, first);
     bool is_one = law->model != SCREE_MODEL_ENERGY_CONSERVING && law->rolling == SCREE_ROLLING_NONE &&
                   law->has_tangential_spring && !law->has_attraction;
-    for (int l = 1; l < SCREE_LANES; ++l) is_one &= law_of(a, first + l) == law;
+    for (int l = 1; l < SCREE_LANES && a->num_materials > 1; ++l) is_one &= law_of(a, first + l) == law;
     return is_one ? law : NULL;
 }
 
@@ -136,11 +145,8 @@ static void force_of_group(const scree_contact_force_args *a, int64_t first, int
         for (int64_t c = first; c < first + num; ++c) scree_contact_force_at(*a, c);
         return;
     }
-    scree_force_group g;
-    load_group(&g, a, first);
-    if (law->model == SCREE_MODEL_LINEAR_SPRING) linear_spring_of_lanes(&g, law, a->time_step);
-    else hertz_mindlin_of_lanes(&g, law, a->time_step);
-    store_group(&g, &a->contacts, first);
+    if (law->model == SCREE_MODEL_LINEAR_SPRING) linear_spring_of_group(a, law, first);
+    else hertz_mindlin_of_group(a, law, first);
 }
 
 void scree_contact_force_launch(scree_contact_force_args args, int64_t num)

@@ -5,16 +5,14 @@
 
 #include "contact/contact_list.h"
 #include "forces/contact_law_kernel.h"
+#include "forces/moving_body.h"
 
 /// Bodies as the forces see them: particles first, then walls; all (num_bodies).
 typedef struct scree_body_motion
 {
     const scree_pose *pose;
-    const scree_vec3 *velocity;         ///< [m/s] at the position of the pose
-    const scree_vec3 *angular_velocity; ///< [rad/s] world axes
-    const scree_real *inverse_mass;     ///< [1/kg]; 0 for walls
-    const scree_real *inverse_radius;   ///< [1/m] of the sphere of the same volume; 0 for walls
-    const int32_t *material;
+    const scree_moving_body *moving;
+    const scree_real *inverse_radius; ///< [1/m] of the sphere of the same volume; 0 for walls
 } scree_body_motion;
 
 /// How a body moves.
@@ -29,8 +27,8 @@ SCREE_FN scree_motion scree_motion_of(const scree_body_motion *bodies, int32_t i
 {
     scree_motion motion;
     motion.position = bodies->pose[i].position;
-    motion.velocity = bodies->velocity[i];
-    motion.angular_velocity = bodies->angular_velocity[i];
+    motion.velocity = bodies->moving[i].velocity;
+    motion.angular_velocity = bodies->moving[i].angular_velocity;
     return motion;
 }
 
@@ -67,8 +65,8 @@ SCREE_FN void scree_rolling_pair(const scree_body_motion *bodies, int32_t i, int
     const scree_real i_over_r = bodies->inverse_radius[i], j_over_r = bodies->inverse_radius[j];
     k->effective_radius = 1 / (i_over_r + j_over_r);
     // 1/(7/5 m R^2) of each
-    k->rolling_inertia = (scree_real)1.4 / (bodies->inverse_mass[i] * i_over_r * i_over_r +
-                                            bodies->inverse_mass[j] * j_over_r * j_over_r);
+    k->rolling_inertia = (scree_real)1.4 / (bodies->moving[i].inverse_mass * i_over_r * i_over_r +
+                                            bodies->moving[j].inverse_mass * j_over_r * j_over_r);
 }
 
 SCREE_FN void scree_contact_force_at(scree_contact_force_args a, int64_t c)
@@ -76,7 +74,8 @@ SCREE_FN void scree_contact_force_at(scree_contact_force_args a, int64_t c)
     const scree_candidate_pair pair = a.contacts.bodies[c];
     const scree_body_motion bodies =
         a.bodies; // with the address of a part, compilers would copy all arguments each time
-    const scree_force_law *law = a.laws + (int64_t)bodies.material[pair.i] * a.num_materials + bodies.material[pair.j];
+    const scree_force_law *law =
+        a.laws + (int64_t)bodies.moving[pair.i].material * a.num_materials + bodies.moving[pair.j].material;
 
     // what is known of the contact, its history included
     scree_contact_kinematics k;
@@ -86,8 +85,9 @@ SCREE_FN void scree_contact_force_at(scree_contact_force_args a, int64_t c)
     k.radius = has_extent ? a.contacts.radius[c] : 0;
     k.normal = a.contacts.normal[c];
     k.relative_velocity = scree_relative_velocity(&bodies, pair.i, pair.j, a.contacts.arm[c]);
-    k.relative_rotation = scree_vec3_sub(bodies.angular_velocity[pair.i], bodies.angular_velocity[pair.j]);
-    k.effective_mass = 1 / (bodies.inverse_mass[pair.i] + bodies.inverse_mass[pair.j]);
+    k.relative_rotation =
+        scree_vec3_sub(bodies.moving[pair.i].angular_velocity, bodies.moving[pair.j].angular_velocity);
+    k.effective_mass = 1 / (bodies.moving[pair.i].inverse_mass + bodies.moving[pair.j].inverse_mass);
     k.time_step = a.time_step;
     k.effective_radius = 0;
     k.rolling_inertia = 0;

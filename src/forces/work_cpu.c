@@ -1,83 +1,82 @@
 /// \file work_cpu.c
 /// Work of the contacts on the CPU. Those that act in points are worked on in groups of lanes (lanes.h), and then added
 /// up one by one, in their order.
-#include "core/lanes.h"
 #include "forces/forces.h"
+#include "forces/motion_lanes.h"
 
 SCREE_DEFINE_LAUNCH_ON(scree_work)
 
 typedef struct scree_work_group
 {
-    scree_lanes_vec3 position_i, velocity_i, angular_velocity_i, position_j, velocity_j, angular_velocity_j;
+    scree_motion_lanes i, j;
     scree_lanes_vec3 arm, normal, normal_force, tangential_force;
-    scree_real elastic_force[SCREE_LANES], inverse_mass[SCREE_LANES];
-    scree_real tangential_stiffness[SCREE_LANES], tangential_over_normal[SCREE_LANES];
-    scree_real hysteresis[SCREE_LANES], damping[SCREE_LANES], lost[SCREE_LANES];
+    scree_real tangential_over_normal[SCREE_LANES], slip[SCREE_LANES];
+    scree_real hysteresis[SCREE_LANES], damping[SCREE_LANES], friction[SCREE_LANES], viscous[SCREE_LANES];
     scree_real inverse_step_squared[SCREE_LANES]; ///< [1/s^2] k_eff/m_eff
 } scree_work_group;
-
-SCREE_LANES_FUNCTION static void work_of_lanes(scree_work_group *restrict g, scree_real time_step)
-{
-    for (int l = 0; l < SCREE_LANES; ++l)
-    {
-        const scree_motion i = {scree_lanes_get(&g->position_i, l), scree_lanes_get(&g->velocity_i, l),
-                                scree_lanes_get(&g->angular_velocity_i, l)};
-        const scree_motion j = {scree_lanes_get(&g->position_j, l), scree_lanes_get(&g->velocity_j, l),
-                                scree_lanes_get(&g->angular_velocity_j, l)};
-        const scree_vec3 v = scree_velocity_between(&i, &j, scree_lanes_get(&g->arm, l));
-        const scree_work_terms terms =
-            scree_work_terms_make(scree_lanes_get(&g->normal, l), v, 0, scree_lanes_get(&g->normal_force, l),
-                                  scree_lanes_get(&g->tangential_force, l), g->elastic_force[l], 0, time_step);
-        g->hysteresis[l] = terms.hysteresis;
-        g->damping[l] = terms.damping;
-        g->lost[l] = terms.lost;
-        const scree_real k_t = g->tangential_stiffness[l], k_n = k_t / g->tangential_over_normal[l];
-        g->inverse_step_squared[l] = g->inverse_mass[l] * scree_max(k_n, k_t);
-    }
-}
 
 static void load_group(scree_work_group *restrict g, const scree_work_args *restrict a, int64_t first)
 {
     const scree_contact_list *list = &a->contacts;
+    scree_load_motions(&g->i, &g->j, &a->bodies, list->bodies + first);
+    scree_lanes_load(&g->arm, list->arm + first);
+    scree_lanes_load(&g->normal, list->normal + first);
+    scree_lanes_load(&g->normal_force, list->normal_force + first);
+    scree_lanes_load(&g->tangential_force, list->tangential_force + first);
     for (int l = 0; l < SCREE_LANES; ++l)
     {
-        const int64_t c = first + l;
-        const scree_candidate_pair pair = list->bodies[c];
-        scree_lanes_set(&g->position_i, l, a->bodies.pose[pair.i].position);
-        scree_lanes_set(&g->velocity_i, l, a->bodies.velocity[pair.i]);
-        scree_lanes_set(&g->angular_velocity_i, l, a->bodies.angular_velocity[pair.i]);
-        scree_lanes_set(&g->position_j, l, a->bodies.pose[pair.j].position);
-        scree_lanes_set(&g->velocity_j, l, a->bodies.velocity[pair.j]);
-        scree_lanes_set(&g->angular_velocity_j, l, a->bodies.angular_velocity[pair.j]);
-        scree_lanes_set(&g->arm, l, list->arm[c]);
-        scree_lanes_set(&g->normal, l, list->normal[c]);
-        scree_lanes_set(&g->normal_force, l, list->normal_force[c]);
-        scree_lanes_set(&g->tangential_force, l, list->tangential_force[c]);
-        g->elastic_force[l] = list->elastic_force[c];
-        g->tangential_stiffness[l] = list->tangential_stiffness[c];
+        const int64_t material_i = a->bodies.moving[g->i.body[l]].material;
+        const int32_t material_j = a->bodies.moving[g->j.body[l]].material;
+        g->tangential_over_normal[l] = a->laws[material_i * a->num_materials + material_j].tangential_over_normal;
+        g->slip[l] = list->is_slipping[first + l];
+    }
+}
+
+SCREE_LANES_FUNCTION static void work_of_lanes(scree_work_group *restrict g, const scree_work_args *restrict a,
+                                               int64_t first)
+{
+    load_group(g, a, first);
+    const scree_real *elastic_force = a->contacts.elastic_force + first;
+    const scree_real *elastic_work = a->contacts.elastic_work + first, *spring_work = a->contacts.spring_work + first;
+    const scree_real *tangential_stiffness = a->contacts.tangential_stiffness + first;
+    const scree_real time_step = a->time_step;
+    for (int l = 0; l < SCREE_LANES; ++l)
+    {
+        const scree_vec3 v = scree_velocity_of_lane(&g->i, &g->j, scree_lanes_get(&g->arm, l), l);
+        const scree_work_terms terms =
+            scree_work_terms_make(scree_lanes_get(&g->normal, l), v, 0, scree_lanes_get(&g->normal_force, l),
+                                  scree_lanes_get(&g->tangential_force, l), elastic_force[l], 0, time_step);
+        const scree_work_losses losses = scree_work_losses_make(terms, elastic_work[l], spring_work[l], g->slip[l] > 0);
+        g->hysteresis[l] = losses.hysteresis;
+        g->damping[l] = losses.damping;
+        g->friction[l] = losses.friction;
+        g->viscous[l] = losses.viscous;
+        const scree_real k_t = tangential_stiffness[l], k_n = k_t / g->tangential_over_normal[l];
         // walls have no inverse mass
-        g->inverse_mass[l] = a->bodies.inverse_mass[pair.i] + a->bodies.inverse_mass[pair.j];
-        const int64_t materials = (int64_t)a->bodies.material[pair.i] * a->num_materials + a->bodies.material[pair.j];
-        g->tangential_over_normal[l] = a->laws[materials].tangential_over_normal;
+        g->inverse_step_squared[l] = (g->i.inverse_mass[l] + g->j.inverse_mass[l]) * scree_max(k_n, k_t);
     }
 }
 
 static void add_group(const scree_work_group *g, const scree_work_args *a, int64_t first, scree_work_sums *sums)
 {
-    for (int l = 0; l < SCREE_LANES; ++l)
-    {
-        const int64_t c = first + l;
-        const scree_work_terms terms = {g->hysteresis[l], g->damping[l], g->lost[l]};
-        scree_work_add(&a->contacts, c, terms, sums);
-        const int32_t i = a->contacts.bodies[c].i, j = a->contacts.bodies[c].j;
-        if (j < a->num_particles) continue;
-        const scree_vec3 point = scree_vec3_add(a->bodies.pose[i].position, a->contacts.arm[c]);
-        sums->input += scree_work_of_wall(a, c, j, scree_vec3_sub(point, a->bodies.pose[j].position));
-    }
+    bool has_walls = false;
     // the smallest of the quotients is the quotient of the largest: rounding keeps their order
     scree_real largest = 0;
-    for (int l = 0; l < SCREE_LANES; ++l) largest = scree_max(largest, g->inverse_step_squared[l]);
+    for (int l = 0; l < SCREE_LANES; ++l)
+    {
+        const scree_work_losses losses = {g->hysteresis[l], g->damping[l], g->friction[l], g->viscous[l]};
+        scree_work_add(losses, sums);
+        largest = scree_max(largest, g->inverse_step_squared[l]);
+        has_walls |= g->j.body[l] >= a->num_particles;
+    }
     sums->smallest_step_squared = scree_min(sums->smallest_step_squared, 1 / largest);
+    for (int l = 0; l < SCREE_LANES && has_walls; ++l)
+    {
+        if (g->j.body[l] < a->num_particles) continue;
+        const scree_vec3 point = scree_vec3_add(scree_lanes_get(&g->i.position, l), scree_lanes_get(&g->arm, l));
+        const scree_vec3 arm_j = scree_vec3_sub(point, scree_lanes_get(&g->j.position, l));
+        sums->input += scree_work_of_wall(a, first + l, g->j.body[l], arm_j);
+    }
 }
 
 /// Block b as scree_work_at() has it.
@@ -91,8 +90,7 @@ static void work_of_block(const scree_work_args *a, int64_t b)
     scree_work_group g;
     for (; c + SCREE_LANES <= end; c += SCREE_LANES)
     {
-        load_group(&g, a, c);
-        work_of_lanes(&g, a->time_step);
+        work_of_lanes(&g, a, c);
         add_group(&g, a, c, &sums);
     }
     for (; c < end; ++c) scree_work_of_contact(a, c, &sums);

@@ -38,11 +38,11 @@ SCREE_FN scree_real scree_inverse_mass_at(const scree_work_args *a, int32_t b, s
 {
     if (b >= a->num_particles) return 0;
     // the normal of a sphere goes through its centre
-    if (a->contacts.acts_in_points) return a->bodies.inverse_mass[b];
+    if (a->contacts.acts_in_points) return a->bodies.moving[b].inverse_mass;
     const scree_vec3 inertia = a->inertia[b];
     const scree_mat3 rotation = scree_mat3_from_quat(a->bodies.pose[b].orientation);
     const scree_vec3 lever = scree_mat3_apply_transposed(rotation, scree_vec3_cross(arm, n));
-    return a->bodies.inverse_mass[b] + lever.x * lever.x / inertia.x + lever.y * lever.y / inertia.y +
+    return a->bodies.moving[b].inverse_mass + lever.x * lever.x / inertia.x + lever.y * lever.y / inertia.y +
            lever.z * lever.z / inertia.z;
 }
 
@@ -78,28 +78,42 @@ SCREE_FN void scree_work_begin(scree_work_sums *sums)
     sums->smallest_step_squared = SCREE_REAL_MAX;
 }
 
-/// Adds the terms of contact c: what its springs do not take up is lost.
-SCREE_FN void scree_work_add(const scree_contact_list *contacts, int64_t c, scree_work_terms terms,
-                             scree_work_sums *sums)
+/// Where these terms go: what the springs of the contact do not take up is lost.
+typedef struct scree_work_losses
 {
-    const bool is_turning = !contacts->acts_in_points && contacts->is_turning[c];
-    const scree_real lost = terms.lost - contacts->spring_work[c];
-    sums->hysteresis += terms.hysteresis - contacts->elastic_work[c];
-    sums->damping += terms.damping;
+    scree_real hysteresis, damping; ///< [J] of the normal force
+    scree_real friction, viscous;   ///< [J] of the tangential force and the moment; one of them is 0
+} scree_work_losses;
+
+SCREE_FN scree_work_losses scree_work_losses_make(scree_work_terms terms, scree_real elastic_work,
+                                                  scree_real spring_work, bool is_friction)
+{
+    const scree_real lost = terms.lost - spring_work;
+    scree_work_losses losses;
+    losses.hysteresis = terms.hysteresis - elastic_work;
+    losses.damping = terms.damping;
     // no branch: which contacts slip cannot be foreseen, and adding 0 changes nothing
-    const bool is_friction = contacts->is_slipping[c] || is_turning;
-    sums->friction += is_friction ? lost : 0;
-    sums->damping += is_friction ? 0 : lost;
+    losses.friction = is_friction ? lost : 0;
+    losses.viscous = is_friction ? 0 : lost;
+    return losses;
+}
+
+SCREE_FN void scree_work_add(scree_work_losses losses, scree_work_sums *sums)
+{
+    sums->hysteresis += losses.hysteresis;
+    sums->damping += losses.damping;
+    sums->friction += losses.friction;
+    sums->damping += losses.viscous;
 }
 
 /// A moving wall works on the particle: contact c with wall j.
 SCREE_FN scree_real scree_work_of_wall(const scree_work_args *a, int64_t c, int32_t j, scree_vec3 arm_j)
 {
+    const scree_moving_body *wall = a->bodies.moving + j;
     const scree_vec3 moment = a->contacts.acts_in_points ? scree_vec3_zero() : a->contacts.moment[c];
-    const scree_vec3 v_wall =
-        scree_vec3_add(a->bodies.velocity[j], scree_vec3_cross(a->bodies.angular_velocity[j], arm_j));
+    const scree_vec3 v_wall = scree_vec3_add(wall->velocity, scree_vec3_cross(wall->angular_velocity, arm_j));
     const scree_vec3 f = scree_vec3_add(a->contacts.normal_force[c], a->contacts.tangential_force[c]);
-    return (scree_vec3_dot(f, v_wall) + scree_vec3_dot(moment, a->bodies.angular_velocity[j])) * a->time_step;
+    return (scree_vec3_dot(f, v_wall) + scree_vec3_dot(moment, wall->angular_velocity)) * a->time_step;
 }
 
 /// Adds contact c to the sums.
@@ -108,9 +122,10 @@ SCREE_FN void scree_work_of_contact(const scree_work_args *a, int64_t c, scree_w
     const scree_candidate_pair pair = a->contacts.bodies[c];
     const scree_vec3 arm = a->contacts.arm[c], n = a->contacts.normal[c];
     const scree_vec3 v = scree_relative_velocity(&a->bodies, pair.i, pair.j, arm);
-    const scree_vec3 rotation = scree_vec3_sub(a->bodies.angular_velocity[pair.i], a->bodies.angular_velocity[pair.j]);
+    const scree_vec3 rotation =
+        scree_vec3_sub(a->bodies.moving[pair.i].angular_velocity, a->bodies.moving[pair.j].angular_velocity);
     const scree_force_law *law =
-        a->laws + (int64_t)a->bodies.material[pair.i] * a->num_materials + a->bodies.material[pair.j];
+        a->laws + (int64_t)a->bodies.moving[pair.i].material * a->num_materials + a->bodies.moving[pair.j].material;
     scree_real turning = 0;
     if (law->model == SCREE_MODEL_ENERGY_CONSERVING)
         turning =
@@ -119,7 +134,10 @@ SCREE_FN void scree_work_of_contact(const scree_work_args *a, int64_t c, scree_w
     const scree_work_terms terms =
         scree_work_terms_make(n, v, turning, a->contacts.normal_force[c], a->contacts.tangential_force[c],
                               a->contacts.elastic_force[c], moment_power, a->time_step);
-    scree_work_add(&a->contacts, c, terms, sums);
+    const bool is_turning = !a->contacts.acts_in_points && a->contacts.is_turning[c];
+    const bool is_friction = a->contacts.is_slipping[c] || is_turning;
+    scree_work_add(scree_work_losses_make(terms, a->contacts.elastic_work[c], a->contacts.spring_work[c], is_friction),
+                   sums);
 
     const scree_vec3 point = scree_vec3_add(a->bodies.pose[pair.i].position, arm);
     const scree_vec3 arm_j = scree_vec3_sub(point, a->bodies.pose[pair.j].position);

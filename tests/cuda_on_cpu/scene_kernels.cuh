@@ -113,11 +113,8 @@ inline scree_body_motion motion_on(side &where)
 {
     scree_body_motion motion;
     motion.pose = where.copy(b->pose, num_bodies);
-    motion.velocity = where.copy(b->velocity, num_bodies);
-    motion.angular_velocity = where.copy(b->angular_velocity, num_bodies);
-    motion.inverse_mass = where.copy(b->inverse_mass, num_bodies);
+    motion.moving = where.copy(b->moving, num_bodies);
     motion.inverse_radius = where.copy(b->inverse_radius, num_bodies);
-    motion.material = where.copy(b->material, num_bodies);
     return motion;
 }
 

@@ -34,16 +34,14 @@ static void test_predict()
             args.particles = particles_on(where);
             args.time_step = (scree_real)s->time_step;
             args.pose = where.make<scree_pose>(num_particles);
-            args.velocity = where.make<scree_vec3>(num_particles);
-            args.angular_velocity = where.make<scree_vec3>(num_particles);
+            args.moving = where.zeros<scree_moving_body>(num_particles);
             LAUNCH_ON(where, scree_predict, args, num_particles);
             where.keep(args.particles.position, num_particles);
             where.keep(args.particles.orientation, num_particles);
             where.keep(args.particles.velocity, num_particles);
             where.keep(args.particles.angular_momentum, num_particles);
             where.keep(args.pose, num_particles);
-            where.keep(args.velocity, num_particles);
-            where.keep(args.angular_velocity, num_particles);
+            where.keep(args.moving, num_particles);
         });
 }
 
@@ -55,8 +53,7 @@ static void test_correct()
             scree_correct_args args;
             args.particles = particles_on(where);
             args.time_step = (scree_real)s->time_step;
-            args.velocity = where.make<scree_vec3>(num_particles);
-            args.angular_velocity = where.make<scree_vec3>(num_particles);
+            args.moving = where.zeros<scree_moving_body>(num_particles);
             args.tally = where.zeros<scree_step_tally>(1);
             std::vector<scree_vec3> position(s->particles.position, s->particles.position + num_particles);
             position[17].x = position[19].y = NAN;
@@ -67,8 +64,7 @@ static void test_correct()
             SCREE_CHECK(scree_maximum_value(from) == (double)(num_particles - 17));
             where.keep(args.particles.velocity, num_particles);
             where.keep(args.particles.angular_momentum, num_particles);
-            where.keep(args.velocity, num_particles);
-            where.keep(args.angular_velocity, num_particles);
+            where.keep(args.moving, num_particles);
         });
 }
 
@@ -96,16 +92,14 @@ static scree_body_arrays empty_bodies(side &where)
 {
     scree_body_arrays bodies;
     bodies.pose = where.zeros<scree_pose>(num_bodies);
-    bodies.velocity = where.zeros<scree_vec3>(num_bodies);
-    bodies.angular_velocity = where.zeros<scree_vec3>(num_bodies);
+    bodies.moving = where.zeros<scree_moving_body>(num_bodies);
     return bodies;
 }
 
 static void keep_bodies(side &where, const scree_body_arrays &bodies)
 {
     where.keep(bodies.pose, num_bodies);
-    where.keep(bodies.velocity, num_bodies);
-    where.keep(bodies.angular_velocity, num_bodies);
+    where.keep(bodies.moving, num_bodies);
 }
 
 static void test_place()
@@ -124,8 +118,8 @@ static void test_place()
             {
                 const int64_t body = num_particles + w % s->num_walls;
                 walls.walls[w].pose = b->pose[body];
-                walls.walls[w].velocity = b->velocity[body];
-                walls.walls[w].angular_velocity = b->angular_velocity[body];
+                walls.walls[w].velocity = b->moving[body].velocity;
+                walls.walls[w].angular_velocity = b->moving[body].angular_velocity;
             }
             LAUNCH_ON(where, scree_place_walls, walls, s->num_walls);
             keep_bodies(where, args.bodies);

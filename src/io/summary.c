@@ -59,7 +59,7 @@ static void put_text(FILE *out, const char *key, const char *text)
     fputs("\",\n", out);
 }
 
-/// Fields first .. last - 1 of a row as an object.
+/// Fields first .. last - 1 of a row as an object; all null without a row.
 static void put_row_part(FILE *out, const char *key, const scree_series_row *row, int first, int last)
 {
     int num_fields;
@@ -69,7 +69,8 @@ static void put_row_part(FILE *out, const char *key, const scree_series_row *row
     for (int k = first; k < last; ++k)
     {
         fprintf(out, "%s\n    \"%s\": ", k > first ? "," : "", fields[k].name);
-        if (fields[k].type == SCREE_FIELD_INT64) fprintf(out, "%.0f", scree_field_value(fields + k, row));
+        if (row == NULL) fputs("null", out);
+        else if (fields[k].type == SCREE_FIELD_INT64) fprintf(out, "%.0f", scree_field_value(fields + k, row));
         else put_value(out, scree_field_value(fields + k, row));
     }
     fputs("\n  },\n", out);
@@ -114,8 +115,8 @@ static void put_repose(FILE *out, const scree_simulation *simulation, bool is_he
     put_list(out, "height_map_height", repose.bin_height, is_measured ? repose.num_bins : 0);
 }
 
-/// Of each moving wall the work and, if it rotates, power and torque over its last whole revolution.
-static void put_wall_loads(FILE *out, const scree_simulation *simulation)
+/// Of each moving wall, in a sound state, the work and, if it rotates, power and torque over its last whole revolution.
+static void put_wall_loads(FILE *out, const scree_simulation *simulation, bool is_healthy)
 {
     const scree_averages *averages = &simulation->averages;
     const double seconds = (double)averages->num_periods * averages->period;
@@ -123,7 +124,7 @@ static void put_wall_loads(FILE *out, const scree_simulation *simulation)
     put_key(out, "wall_loads");
     fputc('{', out);
     bool is_first = true;
-    for (int32_t w = 0; w < simulation->num_walls; ++w)
+    for (int32_t w = 0; w < simulation->num_walls && is_healthy; ++w)
     {
         const scree_wall_def *wall = simulation->scene->walls + w;
         if (wall->motion.kind == SCREE_MOTION_FIXED) continue;
@@ -164,11 +165,31 @@ static void put_versions(FILE *out)
     put_text(out, "precision", sizeof(scree_real) == sizeof(double) ? "double" : "single");
 }
 
+/// Of a lost state, which is half of one step and half of another, nothing is told but how far it came.
+static void put_state(FILE *out, const scree_simulation *simulation, const scree_run_result *result,
+                      const scree_series_row *row)
+{
+    const bool is_healthy = strcmp(result->outcome, "failed") != 0;
+    const int first_energy = field_index("kinetic"), balance = field_index("balance"), pairs = field_index("pairs");
+    int num_fields;
+    scree_series_fields(&num_fields);
+    put_row_part(out, "energies", is_healthy ? row : NULL, first_energy, balance);
+    put_number(out, "balance", is_healthy ? row->balance : (double)NAN);
+    put_number(out, "initial_energy", result->initial_energy);
+    put_number(out, "energy_error", is_healthy ? result->energy_error : (double)NAN);
+    put_row_part(out, "counters", is_healthy ? row : NULL, pairs, num_fields);
+    put_wall_loads(out, simulation, is_healthy);
+    put_repose(out, simulation, is_healthy);
+    char hash[17];
+    snprintf(hash, sizeof hash, "%016" PRIx64, scree_simulation_hash(simulation));
+    if (is_healthy) put_text(out, "state_hash", hash);
+    else put_number(out, "state_hash", (double)NAN);
+}
+
 static void put_everything(FILE *out, const scree_simulation *simulation, const scree_run_result *result)
 {
     const scree_series_row row = scree_series_row_of(simulation);
     const int64_t num_particles = simulation->particles.num_particles;
-    const int first_energy = field_index("kinetic"), balance = field_index("balance"), pairs = field_index("pairs");
     fputs("{\n", out);
     put_text(out, "scene", simulation->scene->name != NULL ? simulation->scene->name : "");
     put_text(out, "outcome", result->outcome);
@@ -180,18 +201,7 @@ static void put_everything(FILE *out, const scree_simulation *simulation, const 
     put_integer(out, "particles", num_particles);
     put_integer(out, "walls", simulation->num_walls);
     put_number(out, "mass", total_mass(&simulation->particles));
-    put_row_part(out, "energies", &row, first_energy, balance);
-    put_number(out, "balance", row.balance);
-    put_number(out, "initial_energy", result->initial_energy);
-    put_number(out, "energy_error", result->energy_error);
-    int num_fields;
-    scree_series_fields(&num_fields);
-    put_row_part(out, "counters", &row, pairs, num_fields);
-    put_wall_loads(out, simulation);
-    put_repose(out, simulation, strcmp(result->outcome, "failed") != 0);
-    char hash[17];
-    snprintf(hash, sizeof hash, "%016" PRIx64, scree_simulation_hash(simulation));
-    put_text(out, "state_hash", hash);
+    put_state(out, simulation, result, &row);
     put_versions(out);
     put_integer(out, "threads", result->threads);
     put_integer(out, "steps_run", result->steps_run);

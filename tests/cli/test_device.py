@@ -110,12 +110,34 @@ def test_beds_are_measured_on_the_device(tmp_path):
     assert done.returncode == 2 and "packing and spheres" in done.stderr
 
 
-def test_after_a_kernel_fault_the_run_goes_on_from_its_checkpoint(scene, tmp_path):
-    run(BUILD / "scree", scene, tmp_path / "whole")
-    folder = tmp_path / "broken"
-    # each step has some thirty launches, and the first checkpoint comes after a hundred steps
-    done = run(EMULATED, scene, folder, "--device", "cuda", expect=1, FAULT_AT=12000)
+def check_a_broken_run(scene, folder, done, whole):
+    """Exit code 1 with words, a whole checkpoint, a summary that tells nothing of the lost state, and the unbroken run's state
+    when the CPU goes on."""
     assert "GPU" in done.stderr and "--restart" in done.stdout + done.stderr, done.stdout + done.stderr
     assert (folder / "checkpoint.h5").exists() and not (folder / "checkpoint.h5.tmp").exists()
+    summary = json.loads((folder / "summary.json").read_text())
+    assert summary["outcome"] == "failed" and summary["state_hash"] is None and summary["wall_loads"] == {}
+    numbers = [summary["balance"], summary["energy_error"], *summary["energies"].values(), *summary["counters"].values()]
+    assert len(numbers) > 10 and set(numbers) == {None}
+    assert 0 < summary["step"] < summary["num_steps"] and summary["initial_energy"] is not None
+    # the series ends before the step that failed
+    last_row = (folder / "series.csv").read_text().splitlines()[-1].split(",")
+    assert float(last_row[0]) < summary["time"] + 1e-9
     run(BUILD / "scree", scene, folder, "--restart")
-    assert state_of(folder)[0] == state_of(tmp_path / "whole")[0]
+    assert state_of(folder)[0] == state_of(whole)[0]
+
+
+def test_after_a_kernel_fault_the_run_goes_on_from_its_checkpoint(scene, tmp_path):
+    run(BUILD / "scree", scene, tmp_path / "whole")
+    # each step has some thirty launches, and the first checkpoint comes after a hundred steps
+    done = run(EMULATED, scene, tmp_path / "broken", "--device", "cuda", expect=1, FAULT_AT=12000)
+    check_a_broken_run(scene, tmp_path / "broken", done, tmp_path / "whole")
+
+
+def test_after_memory_has_ended_the_run_goes_on_from_its_checkpoint(scene, tmp_path):
+    # a wide device, whose buffers do not fit into what is taken at the start: more is asked for at the first pair, step 11
+    scene.write_text(SCENE.replace("checkpoint: 2e-3", "checkpoint: 1e-4"))
+    run(BUILD / "scree", scene, tmp_path / "whole")
+    done = run(EMULATED, scene, tmp_path / "broken", "--device", "cuda", expect=1, NO_MEMORY_AT=2, WORKERS=16)
+    assert "step 11" in done.stderr and "has no memory for" in done.stderr
+    check_a_broken_run(scene, tmp_path / "broken", done, tmp_path / "whole")

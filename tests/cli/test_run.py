@@ -446,7 +446,7 @@ def test_an_unstable_run_fails_and_keeps_its_checkpoint(scene, whole, tmp_path):
     assert "particle 3" in done.stderr and "time.step" in done.stderr and "--replace" in done.stderr
     summary = summary_of(tmp_path / "run")
     assert summary["outcome"] == "failed" and summary["repose_angle_degrees"] is None
-    assert summary["energies"]["kinetic"] is None
+    assert summary["energies"]["kinetic"] is None and summary["state_hash"] is None and set(summary["counters"].values()) == {None}
     assert (tmp_path / "run" / "checkpoint.h5").read_bytes() == before
 
 

@@ -42,6 +42,7 @@ struct device
     std::deque<std::function<void()>> queue;
     size_t num_bytes = 0;
     long num_launches = 0;
+    long num_left = settings().no_memory_at - 1; ///< allocations that there is memory for; < 0: any
     cudaError_t last_error = cudaSuccess;
     bool is_lost = false; ///< after a fault of a kernel every call fails
 };
@@ -120,6 +121,7 @@ const machine_settings &settings()
         s.driver = static_cast<int>(number_from("CUDA_ON_CPU_DRIVER", 13000));
         s.memory = static_cast<size_t>(number_from("CUDA_ON_CPU_MEMORY", 1l << 32));
         s.fault_at = number_from("CUDA_ON_CPU_FAULT_AT", 0);
+        s.no_memory_at = number_from("CUDA_ON_CPU_NO_MEMORY_AT", 0);
         return s;
     }();
     return read;
@@ -175,6 +177,8 @@ void drain()
     }
     for (auto &entry : d.allocations) set_visible(entry.first, entry.second, false);
 }
+
+void allow_allocations(long num) { the_device().num_left = num; }
 
 int launch(const char *kernel, const launch_shape &shape, std::function<void()> body)
 {
@@ -289,7 +293,9 @@ cudaError_t cudaStreamSynchronize(cudaStream_t) { return cudaDeviceSynchronize()
 cudaError_t cudaMalloc(void **address, size_t num_bytes)
 {
     device &d = the_device();
-    if (num_bytes == 0 || d.num_bytes + num_bytes > settings().memory) return remember(cudaErrorMemoryAllocation);
+    if (num_bytes == 0 || d.num_left == 0 || d.num_bytes + num_bytes > settings().memory)
+        return remember(cudaErrorMemoryAllocation);
+    if (d.num_left > 0) --d.num_left;
     // the end of the array stands as near to the forbidden page as the alignment allows
     const size_t rounded = (num_bytes + alignment - 1) / alignment * alignment;
     allocation block = {num_bytes, nullptr, (rounded + page_bytes - 1) / page_bytes * page_bytes + 2 * page_bytes};

@@ -21,10 +21,11 @@ struct machine_settings
     unsigned seed;
     unsigned num_workers;
     int num_devices;
-    int capability; ///< 80 stands for 8.0
-    int driver;     ///< as cudaDriverGetVersion() tells it
-    size_t memory;  ///< [bytes]
-    long fault_at;  ///< number of the launch that fails, counted from 1; 0: none
+    int capability;    ///< 80 stands for 8.0
+    int driver;        ///< as cudaDriverGetVersion() tells it
+    size_t memory;     ///< [bytes]
+    long fault_at;     ///< number of the launch that fails, counted from 1; 0: none
+    long no_memory_at; ///< number of the allocation from which on there is no memory, counted from 1; 0: none
 };
 const machine_settings &settings();
 

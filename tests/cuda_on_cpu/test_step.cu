@@ -246,6 +246,47 @@ static void test_sides_change_at_checkpoints()
     SCREE_CHECK(remove(path.c_str()) == 0 && remove(folder) == 0);
 }
 
+#if defined(CUDA_ON_CPU) && !defined(CUDA_ON_CPU_RACES)
+#define TEST_MEMORY_ENDS 1
+/// Memory ends at every one of the allocations of a run in turn: it is told, the state before is still the CPU's,
+/// nothing is lost but the step, and the device can be used again.
+static void test_memory_ends()
+{
+    const std::string text = mixed();
+    int64_t num_refused = 0, num_broken = 0, num_whole = 0;
+    for (long num = 0; num_whole == 0; ++num)
+    {
+        scene_run run;
+        scene_run_start(&run, text.c_str());
+        scree_device_def def = scree_default_device_def();
+        def.arena_bytes = 0;
+        scree_device *device = nullptr;
+        SCREE_CHECK_INT(scree_device_open(&device, &def, &run.report), SCREE_OK);
+        const uint64_t before = scree_simulation_hash(run.simulation);
+        cuda_on_cpu::allow_allocations(num);
+        scree_status status = scree_simulation_use_device(run.simulation, device, &run.report);
+        if (status != SCREE_OK)
+        {
+            ++num_refused;
+            // and the run goes on without it
+            SCREE_CHECK(scree_simulation_hash(run.simulation) == before);
+            steps(run.simulation, 1);
+        }
+        for (int k = 0; k < 120 && status == SCREE_OK; ++k) status = scree_simulation_step(run.simulation, &run.report);
+        num_broken += run.simulation->step > 1 && status != SCREE_OK;
+        num_whole += status == SCREE_OK;
+        SCREE_CHECK(status == SCREE_OK || status == SCREE_OUT_OF_MEMORY);
+        SCREE_CHECK(status == SCREE_OK || scree_report_num_faults(&run.report) > 0);
+        SCREE_CHECK_INT(scree_device_status(device, NULL), SCREE_OK);
+        cuda_on_cpu::allow_allocations(-1);
+        scene_run_end(&run);
+        scree_device_close(device);
+    }
+    printf("%lld refused, %lld broken off\n", (long long)num_refused, (long long)num_broken);
+    SCREE_CHECK(num_refused > 10 && num_broken > 10);
+}
+#endif
+
 int main()
 {
     if (is_without_device()) return SKIPPED;
@@ -254,5 +295,8 @@ int main()
     SCREE_RUN(test_mixed);
     SCREE_RUN(test_patches);
     SCREE_RUN(test_sides_change_at_checkpoints);
+#ifdef TEST_MEMORY_ENDS
+    SCREE_RUN(test_memory_ends);
+#endif
     return SCREE_TEST_END();
 }

@@ -87,6 +87,9 @@ void enqueue(std::function<void()> work);
 /// Does all the work that waits.
 void drain();
 
+/// From now on there is memory for so many allocations; < 0: for all that fit.
+void allow_allocations(long num);
+
 /// Name of a function; the program must export its symbols.
 const char *name_of(const void *function);
 /// Fails if an aligned word of these bytes is the address of host memory.

@@ -18,7 +18,7 @@ PAGE = ROOT / "docs" / "theory" / "gpu_cost.md"
 
 # numbers of reals and of other bytes of each type
 TYPES = {"real": (1, 0), "vec3": (3, 0), "quat": (4, 0), "pose": (8, 0), "int32": (0, 4), "int64": (0, 8), "uint8": (0, 1),
-         "pair": (0, 8), "moving": (7, 8), "memory": (4, 8), "sphere": (4, 0)}
+         "pair": (0, 8), "moving": (7, 8), "memory": (0, 16), "sphere": (4, 0)}
 SECTOR = 32  # bytes, the least that a GPU moves
 
 # Kernels of the steady step of polyhedra, one launch each. `own`: arrays at the index itself, each byte once. `far`: arrays
@@ -31,19 +31,19 @@ KERNELS = [
     ("scree_travel", "particle", "src/dynamics/neighbour_kernel.h",
      dict(own="shape:int32 pose:pose searched_pose:pose last_pose:pose*2 travel:real*2"), 320),
     ("scree_mesh_apart", "pair", "src/contact/mesh_pairs_kernel.h",
-     dict(own="batch:int32 active:int32 num_results:int32 first_of_pair:int64 pairs:pair memory:memory", near="travel:real", far="travel:real"), 30),
+     dict(own="batch:int32 active:int32 first_of_pair:int64 pairs:pair memory:memory", near="travel:real", far="travel:real"), 30),
     ("scree_overlap_pairs", "contact", "src/contact/overlap_pairs_kernel.h",
-     dict(own="active:int32 pairs:pair results:real*21", near="pose:pose shape:int32", far="pose:pose shape:int32"),
+     dict(own="active:int32 pairs:pair", near="pose:pose shape:int32", far="pose:pose shape:int32"),
      13925),
     ("scan of contacts", "pair", None, dict(own="first_of_pair:int64*3"), 10),
     ("scree_mesh_write", "contact", "src/contact/mesh_pairs_kernel.h",
-     dict(own="results:real*21 pairs:pair bodies:pair patch:int32 volume:real indentation:real radius:real normal:vec3 "
-              "area_vector:vec3 torque_vector:vec3 arm:vec3 first_of_pair:int64"), 60),
+     dict(own="kept:real*18 first_kept:int32*2 pairs:pair bodies:pair patch:int32 volume:real indentation:real radius:real "
+              "normal:vec3 arm:vec3 first_of_pair:int64"), 60),
     ("scree_history_match", "pair", "src/contact/history_kernel.h",
      dict(own="first_of_pair:int64 old_first_of_pair:int64 old_of_contact:int64 is_continued:uint8*2"), 52),
     ("scree_contact_force", "contact", "src/forces/contact_force_kernel.h",
      dict(own="bodies:pair volume:real indentation:real radius:real normal:vec3 arm:vec3 old_of_contact:int64 spring_force:vec3*2 "
-              "tangential_stiffness:real*2 torsion:real*2 rolling_moment:vec3*2 spring_energy:real*2 elastic_energy:real*2 "
+              "tangential_stiffness:real*2 torsion:real*2 spring_energy:real*2 elastic_energy:real*2 "
               "normal_force:vec3 tangential_force:vec3 elastic_force:real moment:vec3 elastic_work:real spring_work:real "
               "is_slipping:uint8 is_turning:uint8",
           near="pose:pose moving:moving",

@@ -3,42 +3,33 @@
 #include "core/buffer.h"
 
 #include <math.h>
+#include <stdlib.h>
 
-/// Every array of one entry per contact, by name.
-#define SCREE_CONTACT_ARRAYS(X) \
-    X(bodies)                   \
-    X(patch)                    \
-    X(volume)                   \
-    X(indentation)              \
-    X(radius)                   \
-    X(normal)                   \
-    X(area_vector)              \
-    X(torque_vector)            \
-    X(arm)                      \
-    X(normal_force)             \
-    X(tangential_force)         \
-    X(elastic_force)            \
-    X(moment)                   \
-    X(elastic_work)             \
-    X(spring_work)              \
-    X(is_slipping)              \
-    X(is_turning)               \
-    X(spring_force)             \
-    X(tangential_stiffness)     \
-    X(torsion)                  \
-    X(rolling_moment)           \
-    X(spring_energy)            \
-    X(elastic_energy)
-
-/// Those that stay zero where all contacts act in points.
-#define SCREE_UNTOUCHED_ARRAYS(X) \
-    X(radius)                     \
-    X(area_vector)                \
-    X(torque_vector)              \
-    X(moment)                     \
-    X(is_turning)                 \
-    X(torsion)                    \
-    X(rolling_moment)
+/// Every array of one entry per contact: X(name, carried to the next step?, does the list have a use for it?).
+#define SCREE_CONTACT_ARRAYS(X)                                             \
+    X(bodies, true, true)                                                   \
+    X(patch, true, true)                                                    \
+    X(volume, false, true)                                                  \
+    X(indentation, false, true)                                             \
+    X(radius, true, !list->acts_in_points)                                  \
+    X(normal, false, true)                                                  \
+    X(area_vector, false, !list->acts_in_points && !list->has_no_levers)    \
+    X(torque_vector, false, !list->acts_in_points && !list->has_no_levers)  \
+    X(arm, true, true)                                                      \
+    X(normal_force, false, true)                                            \
+    X(tangential_force, false, true)                                        \
+    X(elastic_force, false, true)                                           \
+    X(moment, false, !list->acts_in_points)                                 \
+    X(elastic_work, false, true)                                            \
+    X(spring_work, false, true)                                             \
+    X(is_slipping, false, true)                                             \
+    X(is_turning, false, !list->acts_in_points)                             \
+    X(spring_force, true, true)                                             \
+    X(tangential_stiffness, true, true)                                     \
+    X(torsion, true, !list->acts_in_points)                                 \
+    X(rolling_moment, true, !list->acts_in_points && !list->has_no_rolling) \
+    X(spring_energy, true, true)                                            \
+    X(elastic_energy, true, true)
 
 /// A larger array in place of *array, of which the first num_kept items are kept.
 static bool grow(scree_device *device, void *array, int64_t num_kept, int64_t num_items, size_t item_size)
@@ -52,59 +43,118 @@ static bool grow(scree_device *device, void *array, int64_t num_kept, int64_t nu
     return true;
 }
 
+/// Zeros in place of *array that nobody writes: memory that is never touched is not taken. None on a GPU.
+static bool grow_zeros(scree_device *device, void *array, int64_t num_items, size_t item_size)
+{
+    void **items = array;
+    if (device != NULL) return true;
+    void *zeros = calloc((size_t)num_items, item_size);
+    if (zeros == NULL) return false;
+    free(*items);
+    *items = zeros;
+    return true;
+}
+
+static scree_status reserve_pairs(scree_contact_list *list, int64_t num_pairs)
+{
+    scree_device *device = list->device;
+    if (num_pairs <= list->max_pairs && list->first_of_pair != NULL) return SCREE_OK;
+    const int64_t max_pairs = scree_buffer_grown(num_pairs);
+    const bool is_new = list->first_of_pair == NULL;
+    if (!grow(device, &list->first_of_pair, list->max_pairs + 1, max_pairs + 1, sizeof *list->first_of_pair))
+        return SCREE_OUT_OF_MEMORY;
+    if (is_new) scree_device_zero(device, list->first_of_pair, sizeof *list->first_of_pair);
+    list->max_pairs = max_pairs;
+    return SCREE_OK;
+}
+
 scree_status scree_contact_list_reserve(scree_contact_list *list, int64_t num_contacts, int64_t num_pairs)
 {
     scree_device *device = list->device;
-    if (num_pairs > list->max_pairs || list->first_of_pair == NULL)
-    {
-        const int64_t max_pairs = scree_buffer_grown(num_pairs);
-        const bool is_new = list->first_of_pair == NULL;
-        if (!grow(device, &list->first_of_pair, list->max_pairs + 1, max_pairs + 1, sizeof *list->first_of_pair))
-            return SCREE_OUT_OF_MEMORY;
-        if (is_new) scree_device_zero(device, list->first_of_pair, sizeof *list->first_of_pair);
-        list->max_pairs = max_pairs;
+    const scree_status status = reserve_pairs(list, num_pairs);
+    const bool grows = num_contacts > list->max_contacts && !list->is_history;
+    const bool grows_carried = num_contacts > list->max_carried;
+    if (status != SCREE_OK || (!grows && !grows_carried)) return status;
+    const int64_t max = scree_buffer_grown(num_contacts);
+#define SCREE_GROW(array, is_carried, is_used)                                                           \
+    if ((is_carried) ? grows_carried : grows)                                                            \
+    {                                                                                                    \
+        const int64_t num_kept = (is_carried) ? list->max_carried : list->max_contacts;                  \
+        const bool is_grown = (is_used) ? grow(device, &list->array, num_kept, max, sizeof *list->array) \
+                                        : grow_zeros(device, &list->array, max, sizeof *list->array);    \
+        if (!is_grown) return SCREE_OUT_OF_MEMORY;                                                       \
     }
-    if (num_contacts <= list->max_contacts) return SCREE_OK;
-    const int64_t max_contacts = scree_buffer_grown(num_contacts);
-#define SCREE_GROW(array) \
-    if (!grow(device, &list->array, list->max_contacts, max_contacts, sizeof *list->array)) return SCREE_OUT_OF_MEMORY;
     SCREE_CONTACT_ARRAYS(SCREE_GROW)
 #undef SCREE_GROW
-#define SCREE_ZERO(array)                                       \
-    scree_device_zero(device, list->array + list->max_contacts, \
-                      (size_t)(max_contacts - list->max_contacts) * sizeof *list->array);
-    if (list->acts_in_points)
-    {
-        SCREE_UNTOUCHED_ARRAYS(SCREE_ZERO)
-    }
-#undef SCREE_ZERO
-    list->max_contacts = max_contacts;
+    if (grows) list->max_contacts = max;
+    if (grows_carried) list->max_carried = max;
     return SCREE_OK;
+}
+
+void scree_contact_list_pass_on(scree_contact_list *present, scree_contact_list *history)
+{
+    const scree_contact_list was = *present;
+#define SCREE_EXCHANGE(array, is_carried, is_used) \
+    if (is_carried)                                \
+    {                                              \
+        present->array = history->array;           \
+        history->array = was.array;                \
+    }
+    SCREE_CONTACT_ARRAYS(SCREE_EXCHANGE)
+#undef SCREE_EXCHANGE
+    present->first_of_pair = history->first_of_pair;
+    present->max_pairs = history->max_pairs;
+    present->max_carried = history->max_carried;
+    present->num_contacts = 0;
+    history->first_of_pair = was.first_of_pair;
+    history->max_pairs = was.max_pairs;
+    history->max_carried = was.max_carried;
+    history->num_contacts = was.num_contacts;
+}
+
+void scree_contact_list_share_uses(scree_contact_list *to, const scree_contact_list *from)
+{
+    to->acts_in_points = from->acts_in_points;
+    to->has_no_levers = from->has_no_levers;
+    to->has_no_rolling = from->has_no_rolling;
 }
 
 scree_status scree_contact_list_copy(scree_contact_list *to, const scree_contact_list *from)
 {
-    to->acts_in_points = from->acts_in_points;
+    scree_contact_list *list = to;
+    scree_contact_list_share_uses(to, from);
     const scree_status status = scree_contact_list_reserve(to, from->num_contacts, 0);
     if (status != SCREE_OK) return status;
     to->num_contacts = from->num_contacts;
     const size_t num = (size_t)from->num_contacts;
-#define SCREE_COPY(array)                                                                                     \
-    if (to->device == NULL) scree_device_read(from->device, to->array, from->array, num * sizeof *to->array); \
-    else scree_device_write(to->device, to->array, from->array, num * sizeof *to->array);
+#define SCREE_COPY(array, is_carried, is_used)                                            \
+    if ((is_used) && to->device == NULL)                                                  \
+        scree_device_read(from->device, to->array, from->array, num * sizeof *to->array); \
+    else if (is_used) scree_device_write(to->device, to->array, from->array, num * sizeof *to->array);
     SCREE_CONTACT_ARRAYS(SCREE_COPY)
 #undef SCREE_COPY
     return SCREE_OK;
 }
 
+int64_t scree_contact_list_bytes(const scree_contact_list *list)
+{
+    size_t num_bytes = 0;
+#define SCREE_ADD(array, is_carried, is_used) num_bytes += (is_used) ? ((is_carried) ? 2 : 1) * sizeof *list->array : 0;
+    SCREE_CONTACT_ARRAYS(SCREE_ADD)
+#undef SCREE_ADD
+    return (int64_t)num_bytes;
+}
+
 void scree_contact_list_destroy(scree_contact_list *list)
 {
     scree_device *device = list->device;
-#define SCREE_FREE(array) scree_device_free(device, list->array);
+#define SCREE_FREE(array, is_carried, is_used) scree_device_free(device, list->array);
     SCREE_CONTACT_ARRAYS(SCREE_FREE)
 #undef SCREE_FREE
     scree_device_free(device, list->first_of_pair);
-    *list = (scree_contact_list){.device = device};
+    scree_contact_list empty = {.device = device, .is_history = list->is_history};
+    scree_contact_list_share_uses(&empty, list);
+    *list = empty;
 }
 
 /// Order of contacts a and b by (i, j, patch): negative, zero or positive.

@@ -11,27 +11,32 @@
 #define SCREE_PATCH_BITS 15
 
 /// Owns its arrays, all (num_contacts) unless stated. Start from {0}, or from {.device = ...} for a list on a GPU.
-/// i < j; j may be a wall (id num_particles + w). Vectors in world axes.
+/// i < j; j may be a wall (id num_particles + w). Vectors in world axes. What a scene has no use for stays zero, is
+/// not touched, takes no memory, and is NULL on a GPU; the arrays marked + are what is known of the step before.
 typedef struct scree_contact_list
 {
     int64_t num_contacts;
-    int64_t max_contacts;
+    int64_t max_contacts; ///< room of the arrays without +
+    int64_t max_carried;  ///< room of the arrays with +
     int64_t max_pairs;
     scree_device *device;   ///< where the arrays lie, NULL: the CPU
-    bool acts_in_points;    ///< all bodies are spheres and no law has moments: arrays marked * stay zero, untouched
+    bool is_history;        ///< of the step before: there are only the arrays with +, and first_of_pair
+    bool acts_in_points;    ///< all bodies are spheres and no law has moments: no use for arrays with *
+    bool has_no_levers;     ///< no law asks for the shape of the overlap: no use for arrays with **
+    bool has_no_rolling;    ///< no law has rolling resistance: no use for rolling_moment
     int64_t *first_of_pair; ///< (num_pairs + 1) contacts of candidate pair p are first_of_pair[p] .. [p + 1] - 1
 
     // geometry, from the narrow phase
-    scree_candidate_pair *bodies;
-    int32_t *patch;          ///< part << SCREE_PATCH_BITS, plus 0, 1, ... within the part
-    scree_real *volume;      ///< [m^3]
-    scree_real *indentation; ///< [m]
-    scree_real *radius; ///< * [m] of the contact across the normal, about the contact point; 0 for a sphere's contact,
-                        ///< which acts in a point
-    scree_vec3 *normal; ///< [1] unit, from j towards i
-    scree_vec3 *area_vector;   ///< * [m^2] area of i's surface inside j, outward from i; 0 for a sphere's contact
-    scree_vec3 *torque_vector; ///< * [m^3] sum of x cross area vector over the same part, x from the contact point
-    scree_vec3 *arm;           ///< [m] contact point minus position of i
+    scree_candidate_pair *bodies; ///< +
+    int32_t *patch;               ///< + part << SCREE_PATCH_BITS, plus 0, 1, ... within the part
+    scree_real *volume;           ///< [m^3]
+    scree_real *indentation;      ///< [m]
+    scree_real *radius;        ///< + * [m] of the contact across the normal, about the contact point; 0 for a sphere's
+                               ///< contact, which acts in a point
+    scree_vec3 *normal;        ///< [1] unit, from j towards i
+    scree_vec3 *area_vector;   ///< * ** [m^2] area of i's surface inside j, outward from i; 0 for a sphere's contact
+    scree_vec3 *torque_vector; ///< * ** [m^3] sum of x cross area vector over the same part, x from the contact point
+    scree_vec3 *arm;           ///< + [m] contact point minus position of i
 
     // forces, from the force law
     scree_vec3 *normal_force;     ///< [N] on i; that on j is the exact opposite
@@ -44,12 +49,12 @@ typedef struct scree_contact_list
     uint8_t *is_turning;          ///< * 1 while torsion or rolling resistance is at its limit
 
     // history, carried from step to step
-    scree_vec3 *spring_force;         ///< [N] elastic part of the tangential force on i
-    scree_real *tangential_stiffness; ///< [N/m] k_t of the last step
-    scree_real *torsion;              ///< * [N m] elastic part of the moment about the normal, on i
-    scree_vec3 *rolling_moment;       ///< * [N m] elastic part of the rolling resistance on i
-    scree_real *elastic_energy;       ///< [J] of the normal force
-    scree_real *spring_energy;        ///< [J] of the tangential, the torsion and the rolling spring
+    scree_vec3 *spring_force;         ///< + [N] elastic part of the tangential force on i
+    scree_real *tangential_stiffness; ///< + [N/m] k_t of the last step
+    scree_real *torsion;              ///< + * [N m] elastic part of the moment about the normal, on i
+    scree_vec3 *rolling_moment;       ///< + * [N m] elastic part of the rolling resistance on i
+    scree_real *elastic_energy;       ///< + [J] of the normal force
+    scree_real *spring_energy;        ///< + [J] of the tangential, the torsion and the rolling spring
 } scree_contact_list;
 
 /// The list as kernels get it: they have no use for the device.
@@ -60,11 +65,18 @@ SCREE_FN scree_contact_list scree_contact_list_view(const scree_contact_list *li
     return view;
 }
 
-/// Room for num_contacts and num_pairs, growing by half at least. SCREE_OUT_OF_MEMORY leaves what the list holds as it
-/// was.
+/// The present contacts become those of the step before: the arrays with + and first_of_pair change places. The
+/// present list keeps the others, to be written anew. It has no contacts then.
+void scree_contact_list_pass_on(scree_contact_list *present, scree_contact_list *history);
+/// Room for num_contacts and num_pairs, growing by a quarter at least. SCREE_OUT_OF_MEMORY leaves what the list holds
+/// as it was.
 scree_status scree_contact_list_reserve(scree_contact_list *list, int64_t num_contacts, int64_t num_pairs);
+/// What one list has no use for, another has none for either.
+void scree_contact_list_share_uses(scree_contact_list *to, const scree_contact_list *from);
 /// The contacts of one list to another, which may lie elsewhere; not which pairs they belong to. SCREE_OUT_OF_MEMORY.
 scree_status scree_contact_list_copy(scree_contact_list *to, const scree_contact_list *from);
+/// Bytes of a contact in a list of these uses and in the history of the step before.
+int64_t scree_contact_list_bytes(const scree_contact_list *list);
 void scree_contact_list_destroy(scree_contact_list *list);
 /// On the CPU: sorted by (i, j, patch), unique, normals unit, volumes positive. Faults go to the report.
 bool scree_contact_list_validate(const scree_contact_list *list, scree_report *report);

@@ -8,13 +8,29 @@
 #include "contact/pair_tally.h"
 #include "contact/separating_direction_kernel.h"
 
-/// What is remembered of a candidate pair from step to step.
+/// What is remembered of a candidate pair from step to step. Most pairs of a bed do not touch, so this is what a pair
+/// costs in memory: single precision is enough for a direction that is tried first and for a bound that is rounded
+/// down.
 typedef struct scree_pair_memory
 {
-    scree_vec3 direction;   ///< that separated it last time, or zero
-    scree_real apart_until; ///< [m] sum of the travels of both bodies up to which it cannot touch
-    bool was_touching;      ///< at the last look
+    float direction[3]; ///< that separated it last time, or zero
+    float apart_until;  ///< [m] sum of the travels of both bodies up to which it cannot touch; < 0: it touched
 } scree_pair_memory;
+
+#define SCREE_PAIR_TOUCHED (-1.0F)
+
+/// What the list takes of an overlap, until its place there is known.
+typedef struct scree_kept_overlap
+{
+    scree_vec3 normal, arm;
+    scree_real volume, indentation, radius;
+} scree_kept_overlap;
+
+/// The same, where a law asks for the shape of the overlap.
+typedef struct scree_kept_lever
+{
+    scree_vec3 area_vector, torque_vector;
+} scree_kept_lever;
 
 typedef struct scree_mesh_pairs_args
 {
@@ -23,9 +39,10 @@ typedef struct scree_mesh_pairs_args
     const int32_t *batch;              ///< (num in batch) indices of those of two meshes
     scree_pair_memory *memory;         ///< (num in batch)
     int32_t *active;                   ///< (num in batch) entries that may touch, in any order
-    scree_overlap_result *results;     ///< (num in batch, max_results)
-    int32_t *num_results;              ///< (num in batch) as computed, may exceed max_results
-    int32_t max_results;
+    scree_kept_overlap *kept;          ///< (max_kept) overlaps of all entries that touch; of one entry in order
+    scree_kept_lever *kept_levers;     ///< (max_kept) or NULL if the list has none
+    int64_t max_kept;
+    int32_t *first_kept;     ///< (num in batch) place of the first one of an entry that touches
     scree_contact_list list; ///< number of contacts to first_of_pair; geometry by the last kernel
     scree_pair_tally *tally;
     scree_separation_use use;
@@ -34,21 +51,31 @@ typedef struct scree_mesh_pairs_args
 typedef scree_mesh_pairs_args scree_mesh_apart_args;
 typedef scree_mesh_pairs_args scree_mesh_write_args;
 
+/// Bound of the travels for a pair with a gap: a hair less, for the rounding of the travels and of this number.
+SCREE_FN float scree_apart_until(scree_real travelled, scree_real gap)
+{
+    return (float)(travelled + gap * (scree_real)0.999) * (1 - 4 * FLT_EPSILON);
+}
+
 /// Is the pair known to be apart, or found to be so now? The answer is proven, never a guess.
 SCREE_FN bool scree_pair_is_apart(const scree_bodies *bodies, scree_candidate_pair pair, scree_pair_memory *memory,
                                   scree_separation_use use)
 {
     if (!use.finds) return false;
     const scree_real travelled = bodies->travel[pair.i] + bodies->travel[pair.j];
-    if (use.bounds && travelled < memory->apart_until) return true;
-    if (!use.remembers) memory->direction = scree_vec3_zero();
+    if (use.bounds && travelled < (scree_real)memory->apart_until) return true;
     // contacts mostly last; the search would be in vain
-    else if (memory->was_touching) return false;
+    if (use.remembers && memory->apart_until < 0) return false;
+    const float *last = memory->direction;
+    scree_vec3 direction = scree_vec3_zero();
+    if (use.remembers) direction = scree_vec3_make((scree_real)last[0], (scree_real)last[1], (scree_real)last[2]);
     const scree_real gap =
         scree_separation_search(bodies->shapes + bodies->shape[pair.i], bodies->pose + pair.i,
-                                bodies->shapes + bodies->shape[pair.j], bodies->pose + pair.j, &memory->direction);
-    // a hair less, for the rounding of the travels
-    memory->apart_until = travelled + gap * (scree_real)0.999;
+                                bodies->shapes + bodies->shape[pair.j], bodies->pose + pair.j, &direction);
+    memory->direction[0] = (float)direction.x;
+    memory->direction[1] = (float)direction.y;
+    memory->direction[2] = (float)direction.z;
+    memory->apart_until = gap > 0 ? scree_apart_until(travelled, gap) : 0;
     return gap > 0;
 }
 
@@ -56,21 +83,30 @@ SCREE_FN bool scree_pair_is_apart(const scree_bodies *bodies, scree_candidate_pa
 SCREE_FN void scree_mesh_apart_at(scree_mesh_apart_args a, int64_t m)
 {
     const int32_t p = a.batch[m];
-    a.num_results[m] = 0;
     a.list.first_of_pair[p] = 0;
     if (scree_pair_is_apart(&a.bodies, a.pairs[p], a.memory + m, a.use)) return;
     a.active[scree_atomic_count(&a.tally->num_active, 1)] = (int32_t)m;
 }
 
-/// Notes the `num` results of entry m.
-SCREE_FN void scree_mesh_pair_note(const scree_mesh_pairs_args *a, int32_t m, int32_t num)
+SCREE_FN void scree_keep_overlap(const scree_mesh_pairs_args *a, int64_t k, const scree_overlap_result *result)
 {
-    const scree_overlap_result *results = a->results + (int64_t)m * a->max_results;
-    if (num > a->max_results) scree_atomic_max(&a->tally->most_results, (scree_real)num);
-    a->num_results[m] = num;
-    a->memory[m].was_touching = results[0].status != SCREE_OVERLAP_NONE;
+    scree_kept_overlap *kept = a->kept + k;
+    kept->normal = scree_vec3_negate(result->normal);
+    kept->arm = result->arm;
+    kept->volume = result->volume;
+    kept->indentation = result->indentation;
+    kept->radius = result->radius;
+    if (!a->kept_levers) return;
+    a->kept_levers[k].area_vector = result->area_vector;
+    a->kept_levers[k].torque_vector = result->torque_vector;
+}
+
+/// Notes the `num` results of entry m, and keeps those that touch as far as there is room.
+SCREE_FN void scree_mesh_pair_note(const scree_mesh_pairs_args *a, int32_t m, const scree_overlap_result *results,
+                                   int32_t num)
+{
     int64_t num_contacts = 0;
-    for (int32_t r = 0; r < num && r < a->max_results; ++r)
+    for (int32_t r = 0; r < num; ++r)
     {
         if (results[r].status == SCREE_OVERLAP_NO_NORMAL) scree_atomic_count(&a->tally->num_without_normal, 1);
         if (results[r].status != SCREE_OVERLAP_TOUCHING) continue;
@@ -78,29 +114,35 @@ SCREE_FN void scree_mesh_pair_note(const scree_mesh_pairs_args *a, int32_t m, in
         if (results[r].used_fallback) scree_atomic_count(&a->tally->num_fallbacks, 1);
         scree_atomic_max(&a->tally->worst_residual, results[r].residual);
     }
+    a->memory[m].apart_until = results[0].status != SCREE_OVERLAP_NONE ? SCREE_PAIR_TOUCHED : 0;
     a->list.first_of_pair[a->batch[m]] = num_contacts;
+    if (num_contacts == 0) return;
+    int64_t k = scree_atomic_count(&a->tally->num_kept, num_contacts);
+    if (k + num_contacts > a->max_kept) return;
+    a->first_kept[m] = (int32_t)k;
+    for (int32_t r = 0; r < num; ++r)
+        if (results[r].status == SCREE_OVERLAP_TOUCHING) scree_keep_overlap(a, k++, results + r);
 }
 
 /// Touching results of entry m to the list.
 SCREE_FN void scree_mesh_write_at(scree_mesh_write_args a, int64_t m)
 {
     const int32_t p = a.batch[m];
-    const int64_t begin = a.list.first_of_pair[p];
-    int64_t c = begin;
-    for (int32_t r = 0; r < a.num_results[m]; ++r)
+    const int64_t begin = a.list.first_of_pair[p], end = a.list.first_of_pair[p + 1];
+    for (int64_t c = begin; c < end; ++c)
     {
-        const scree_overlap_result *result = a.results + m * a.max_results + r;
-        if (result->status != SCREE_OVERLAP_TOUCHING) continue;
+        const int64_t k = a.first_kept[m] + (c - begin);
+        const scree_kept_overlap kept = a.kept[k];
         a.list.bodies[c] = a.pairs[p];
         a.list.patch[c] = (int32_t)(c - begin);
-        a.list.volume[c] = result->volume;
-        a.list.indentation[c] = result->indentation;
-        a.list.radius[c] = result->radius;
-        a.list.normal[c] = scree_vec3_negate(result->normal);
-        a.list.area_vector[c] = result->area_vector;
-        a.list.torque_vector[c] = result->torque_vector;
-        a.list.arm[c] = result->arm;
-        ++c;
+        a.list.volume[c] = kept.volume;
+        a.list.indentation[c] = kept.indentation;
+        a.list.radius[c] = kept.radius;
+        a.list.normal[c] = kept.normal;
+        a.list.arm[c] = kept.arm;
+        if (!a.kept_levers) continue;
+        a.list.area_vector[c] = a.kept_levers[k].area_vector;
+        a.list.torque_vector[c] = a.kept_levers[k].torque_vector;
     }
 }
 

@@ -25,12 +25,16 @@ struct scree_narrow_phase_buffers
 
     // two meshes
     scree_overlap_pool pool;
-    scree_overlap_result *results; ///< (num in batch, max_results)
-    int32_t *num_results;          ///< (num in batch) as computed, may exceed max_results
-    int32_t *active;               ///< (num in batch)
-    scree_pair_memory *memory;     ///< (num in batch)
+    scree_overlap_result *results; ///< (slices of the pool, max_results) of pairs under way
+    int64_t num_with_results;      ///< slices
+    int32_t max_results;           ///< of one pair
+    scree_kept_overlap *kept;      ///< (max_kept) of pairs that touch
+    scree_kept_lever *kept_levers; ///< (max_kept) or NULL
+    int64_t max_kept;
+    int32_t *first_kept;       ///< (num in batch)
+    int32_t *active;           ///< (num in batch)
+    scree_pair_memory *memory; ///< (num in batch)
     int64_t max_mesh_pairs;
-    int32_t max_results; ///< per pair
 
     scree_sphere *spheres; ///< (max_bodies)
     int64_t max_bodies;
@@ -52,7 +56,9 @@ void scree_narrow_phase_destroy(scree_narrow_phase *narrow_phase)
         scree_overlap_pool_destroy(&b->pool);
         scree_device_free(device, b->tally);
         scree_device_free(device, b->results);
-        scree_device_free(device, b->num_results);
+        scree_device_free(device, b->kept);
+        scree_device_free(device, b->kept_levers);
+        scree_device_free(device, b->first_kept);
         scree_device_free(device, b->active);
         scree_device_free(device, b->memory);
         scree_device_free(device, b->spheres);
@@ -90,23 +96,36 @@ static bool renew(scree_device *device, void *array, int64_t num, size_t size)
     return *items != NULL;
 }
 
-/// Room for the results of the pairs of meshes. Growing forgets what is known of the pairs.
-static scree_status reserve_results(scree_narrow_phase *narrow_phase, int32_t max_results)
+/// Room for what is known of each pair of meshes. Growing forgets it.
+static scree_status reserve_mesh_pairs(scree_narrow_phase *narrow_phase)
 {
     struct scree_narrow_phase_buffers *b = narrow_phase->buffers;
     scree_device *device = narrow_phase->device;
     const int64_t num = b->batches[SCREE_PAIR_MESH_MESH].num;
-    if (num == 0 || (num <= b->max_mesh_pairs && max_results <= b->max_results)) return SCREE_OK;
-    const int64_t max = num > b->max_mesh_pairs ? scree_buffer_grown(num) : b->max_mesh_pairs;
-    if (max_results > b->max_results) b->max_results = max_results;
+    if (num <= b->max_mesh_pairs) return SCREE_OK;
+    const int64_t max = scree_buffer_grown(num);
     b->max_mesh_pairs = 0;
-    const bool is_complete = renew(device, &b->results, max, (size_t)b->max_results * sizeof *b->results) &&
-                             renew(device, &b->num_results, max, sizeof *b->num_results) &&
+    const bool is_complete = renew(device, &b->first_kept, max, sizeof *b->first_kept) &&
                              renew(device, &b->active, max, sizeof *b->active) &&
                              renew(device, &b->memory, max, sizeof *b->memory);
     if (!is_complete) return SCREE_OUT_OF_MEMORY;
     scree_device_zero(device, b->memory, (size_t)max * sizeof *b->memory);
     b->max_mesh_pairs = max;
+    return SCREE_OK;
+}
+
+/// Room for `num` overlaps that touch.
+static scree_status reserve_kept(scree_narrow_phase *narrow_phase, int64_t num, bool has_levers)
+{
+    struct scree_narrow_phase_buffers *b = narrow_phase->buffers;
+    scree_device *device = narrow_phase->device;
+    if (num > INT32_MAX) return SCREE_TOO_MANY;
+    if (num <= b->max_kept && (b->kept_levers != NULL || !has_levers)) return SCREE_OK;
+    b->max_kept = 0;
+    const int64_t max = scree_buffer_grown(num);
+    if (!renew(device, &b->kept, max, sizeof *b->kept)) return SCREE_OUT_OF_MEMORY;
+    if (has_levers && !renew(device, &b->kept_levers, max, sizeof *b->kept_levers)) return SCREE_OUT_OF_MEMORY;
+    b->max_kept = max;
     return SCREE_OK;
 }
 
@@ -125,14 +144,36 @@ static scree_status reserve_found(scree_narrow_phase *narrow_phase, int32_t max_
     return SCREE_OK;
 }
 
-/// Slices for the overlaps.
-static scree_status reserve_slices(scree_narrow_phase *narrow_phase, scree_overlap_room room)
+/// Slices for the overlaps, and room for max_results of the pair that each works on.
+static scree_status reserve_slices(scree_narrow_phase *narrow_phase, scree_overlap_room room, int32_t max_results)
 {
     struct scree_narrow_phase_buffers *b = narrow_phase->buffers;
-    const int64_t num = b->batches[SCREE_PAIR_MESH_MESH].num;
-    if (num == 0) return SCREE_OK;
+    if (b->batches[SCREE_PAIR_MESH_MESH].num == 0) return SCREE_OK;
     const int64_t num_lanes = narrow_phase->num_lanes > 0 ? narrow_phase->num_lanes : 1;
-    return scree_overlap_pool_reserve(&b->pool, scree_device_concurrency(narrow_phase->device) / num_lanes, room);
+    const scree_status status =
+        scree_overlap_pool_reserve(&b->pool, scree_device_concurrency(narrow_phase->device) / num_lanes, room);
+    if (status != SCREE_OK) return status;
+    const int64_t num_slices = b->pool.num_slices;
+    if (num_slices <= b->num_with_results && max_results <= b->max_results) return SCREE_OK;
+    b->num_with_results = 0;
+    if (max_results > b->max_results) b->max_results = max_results;
+    if (!renew(narrow_phase->device, &b->results, num_slices, (size_t)b->max_results * sizeof *b->results))
+        return SCREE_OUT_OF_MEMORY;
+    b->num_with_results = num_slices;
+    return SCREE_OK;
+}
+
+/// Room for results to begin with, that of one pair in eight; it stays what it has grown to.
+static scree_status start_results(scree_narrow_phase *narrow_phase, bool has_levers)
+{
+    const struct scree_narrow_phase_buffers *b = narrow_phase->buffers;
+    const scree_overlap_room usual = {512, 1024, 128};
+    const scree_status status =
+        reserve_slices(narrow_phase, narrow_phase->room.max_pieces > 0 ? narrow_phase->room : usual,
+                       narrow_phase->options.separate_patches ? 4 : 1);
+    const int64_t num = b->batches[SCREE_PAIR_MESH_MESH].num;
+    if (status != SCREE_OK || num == 0 || b->max_kept > 0) return status;
+    return reserve_kept(narrow_phase, num / 8 + 1, has_levers);
 }
 
 /// What a search goes over.
@@ -183,9 +224,10 @@ static scree_mesh_pairs_args mesh_args(const search *s)
     args.batch = b->batches[SCREE_PAIR_MESH_MESH].pairs;
     args.memory = b->memory;
     args.active = b->active;
-    args.results = b->results;
-    args.num_results = b->num_results;
-    args.max_results = b->max_results;
+    args.kept = b->kept;
+    args.kept_levers = s->list->has_no_levers ? NULL : b->kept_levers;
+    args.max_kept = b->max_kept;
+    args.first_kept = b->first_kept;
     args.list = scree_contact_list_view(s->list);
     args.tally = b->tally;
     args.use = s->narrow_phase->separation;
@@ -236,6 +278,8 @@ static void find_overlaps(const search *s)
     memset(&overlaps, 0, sizeof overlaps);
     overlaps.meshes = args;
     overlaps.slices = b->pool.slices;
+    overlaps.results = b->results;
+    overlaps.max_results = b->max_results;
     overlaps.options = s->narrow_phase->options;
     // threads of the CPU take several at once, so that they meet seldom
     overlaps.num_lanes = s->narrow_phase->num_lanes > 0 ? s->narrow_phase->num_lanes : 1;
@@ -271,6 +315,7 @@ static bool make_room(const search *s, const scree_pair_tally *tally, scree_stat
 {
     const struct scree_narrow_phase_buffers *b = s->narrow_phase->buffers;
     const int32_t most_results = (int32_t)scree_maximum_value(tally->most_results);
+    const bool lacks_kept = tally->num_kept > b->max_kept;
     const int32_t most_found = (int32_t)scree_maximum_value(tally->most_found);
     scree_overlap_room room = b->pool.room;
     if (tally->num_lacking[SCREE_LACK_PIECES] > 0) room.max_pieces *= 2;
@@ -278,14 +323,16 @@ static bool make_room(const search *s, const scree_pair_tally *tally, scree_stat
     if (tally->num_lacking[SCREE_LACK_CROSSINGS] > 0) room.max_crossings *= 2;
     const int64_t num_lacking = tally->num_lacking[SCREE_LACK_PIECES] + tally->num_lacking[SCREE_LACK_SHAPE] +
                                 tally->num_lacking[SCREE_LACK_CROSSINGS];
-    if (num_lacking == 0 && most_results == 0 && most_found == 0) return false;
+    if (num_lacking == 0 && most_results == 0 && most_found == 0 && !lacks_kept) return false;
     if (most_found >> SCREE_PATCH_BITS > 0)
     {
         *status = SCREE_TOO_MANY;
         return true;
     }
-    *status = num_lacking > 0 ? reserve_slices(s->narrow_phase, room) : SCREE_OK;
-    if (*status == SCREE_OK && most_results > 0) *status = reserve_results(s->narrow_phase, most_results);
+    *status = SCREE_OK;
+    if (num_lacking > 0 || most_results > 0) *status = reserve_slices(s->narrow_phase, room, most_results);
+    if (*status == SCREE_OK && lacks_kept)
+        *status = reserve_kept(s->narrow_phase, tally->num_kept, !s->list->has_no_levers);
     if (*status == SCREE_OK && most_found > 0) *status = reserve_found(s->narrow_phase, most_found);
     return true;
 }
@@ -312,14 +359,12 @@ scree_status scree_narrow_phase_find(scree_narrow_phase *narrow_phase, const scr
                                      const scree_candidate_pair *pairs, int64_t num_pairs, scree_contact_list *list)
 {
     const search s = {narrow_phase, *bodies, pairs, num_pairs, list};
-    const scree_overlap_room usual = {512, 1024, 128};
     scree_status status = start(narrow_phase);
     if (status == SCREE_OK) status = scree_contact_list_reserve(list, 0, num_pairs);
     if (status == SCREE_OK) status = sort_pairs(&s);
-    if (status == SCREE_OK) status = reserve_results(narrow_phase, narrow_phase->options.separate_patches ? 4 : 1);
+    if (status == SCREE_OK) status = reserve_mesh_pairs(narrow_phase);
     if (status == SCREE_OK) status = reserve_found(narrow_phase, 3);
-    if (status == SCREE_OK)
-        status = reserve_slices(narrow_phase, narrow_phase->room.max_pieces > 0 ? narrow_phase->room : usual);
+    if (status == SCREE_OK) status = start_results(narrow_phase, !list->has_no_levers);
     if (status == SCREE_OK) status = place_spheres(&s);
 
     // a pair that had no room asks for a second, roomier search

@@ -11,7 +11,9 @@
 typedef struct scree_overlap_pairs_args
 {
     scree_mesh_pairs_args meshes;
-    scree_overlap_slice *slices; ///< (num of the launch) buffers, none shared
+    scree_overlap_slice *slices;   ///< (num of the launch) buffers, none shared
+    scree_overlap_result *results; ///< (num of the launch, max_results) of the pair under way
+    int32_t max_results;
     scree_overlap_options options;
     int64_t num_at_once; ///< pairs that are taken together
     int32_t num_lanes;   ///< of a team on a GPU: see scree_overlap_num_lanes(); no result depends on it
@@ -23,9 +25,9 @@ SCREE_FN int32_t scree_overlap_num_lanes(int32_t num_triangles)
     return num_triangles < SCREE_LARGE_SHAPE ? 8 : num_triangles < 512 ? 16 : 32;
 }
 
-/// Entry m of the batch. Without enough room nothing but the lack is noted: the host makes room and launches again.
-SCREE_FN void scree_overlap_of_pair(const scree_overlap_pairs_args *a, const scree_team *team,
-                                    scree_overlap_slice *slice, int32_t m)
+/// Entry m of the batch, worked on by index i of the launch. Without enough room nothing but the lack is noted: the
+/// host makes room and launches again.
+SCREE_FN void scree_overlap_of_pair(const scree_overlap_pairs_args *a, const scree_team *team, int64_t i, int32_t m)
 {
     const scree_mesh_pairs_args *meshes = &a->meshes;
     const int32_t p = meshes->batch[m];
@@ -36,12 +38,14 @@ SCREE_FN void scree_overlap_of_pair(const scree_overlap_pairs_args *a, const scr
         pair.shape[side] = meshes->bodies.shapes + meshes->bodies.shape[body[side]];
         pair.pose[side] = meshes->bodies.pose + body[side];
     }
-    scree_overlap_result *results = meshes->results + (int64_t)m * meshes->max_results;
-    const int32_t num = scree_overlap_team_compute(team, &pair, &a->options, slice, results, meshes->max_results);
+    scree_overlap_slice *slice = a->slices + i;
+    scree_overlap_result *results = a->results + i * a->max_results;
+    const int32_t num = scree_overlap_team_compute(team, &pair, &a->options, slice, results, a->max_results);
     if (!scree_team_leads(team)) return;
     if (results[0].status == SCREE_OVERLAP_WORKSPACE_FULL)
         scree_atomic_count(meshes->tally->num_lacking + slice->lack, 1);
-    else scree_mesh_pair_note(meshes, m, num);
+    else if (num > a->max_results) scree_atomic_max(&meshes->tally->most_results, (scree_real)num);
+    else scree_mesh_pair_note(meshes, m, results, num);
 }
 
 SCREE_FN void scree_overlap_pairs_team_at(scree_overlap_pairs_args a, const scree_team *team, int64_t i)
@@ -56,7 +60,7 @@ SCREE_FN void scree_overlap_pairs_team_at(scree_overlap_pairs_args a, const scre
         if (begin >= num_active) return;
         for (int64_t k = begin; k < begin + a.num_at_once && k < num_active; ++k)
         {
-            scree_overlap_of_pair(&a, team, a.slices + i, a.meshes.active[k]);
+            scree_overlap_of_pair(&a, team, i, a.meshes.active[k]);
             scree_team_sync(team);
         }
     }

@@ -13,6 +13,7 @@ typedef struct scree_pair_tally
     int64_t num_active;                            ///< pairs of meshes that are not known to be apart
     int64_t num_taken;                             ///< of these, taken up by somebody
     int64_t num_lacking[SCREE_LACK_CROSSINGS + 1]; ///< overlaps that were not computed for lack of room, by what lacked
+    int64_t num_kept;                              ///< overlaps that touch, with or without room to keep them
     scree_maximum most_results;                    ///< of one pair of meshes, if there was no room for them
     scree_maximum most_found;                      ///< on one mesh by a sphere, if there was no room for them
     int64_t num_contacts;                          ///< of all pairs

@@ -72,6 +72,7 @@ SCREE_FN void scree_write_point(scree_contact_list list, int64_t c)
 {
     if (list.acts_in_points) return;
     list.radius[c] = 0;
+    if (list.has_no_levers) return;
     list.area_vector[c] = scree_vec3_zero();
     list.torque_vector[c] = scree_vec3_zero();
 }

@@ -33,6 +33,6 @@ void *scree_buffer_alloc(int64_t num_items, size_t item_size)
 
 int64_t scree_buffer_grown(int64_t num_items)
 {
-    const int64_t extra = num_items / 2 + 16;
+    const int64_t extra = num_items / 4 + 16;
     return num_items > INT64_MAX - extra ? num_items : num_items + extra;
 }

@@ -1,5 +1,5 @@
 /// \file buffer.h
-/// Host memory for arrays: checked sizes, whole cache lines, growth by halves.
+/// Host memory for arrays: checked sizes, whole cache lines, growth by quarters.
 #ifndef SCREE_BUFFER_H
 #define SCREE_BUFFER_H
 
@@ -10,8 +10,8 @@
 /// size overflows; num_items >= 0, and 0 gives a block as well.
 void *scree_buffer_alloc(int64_t num_items, size_t item_size);
 
-/// Capacity to ask for when num_items are needed: half as much again as needed, so that
-/// growing item by item costs linear time. num_items if half more would overflow.
+/// Capacity to ask for when num_items are needed: a quarter more than needed, so that growing item by item costs linear
+/// time. num_items if more would overflow.
 int64_t scree_buffer_grown(int64_t num_items);
 
 #endif

@@ -56,7 +56,7 @@ extern "C"
     void scree_device_copy(scree_device *device, void *to, const void *from, size_t num_bytes);
     void scree_device_zero(scree_device *device, void *memory, size_t num_bytes);
 
-    /// Room for num_items of item_size bytes behind *array, growing by half at least; contents are not kept.
+    /// Room for num_items of item_size bytes behind *array, growing by a quarter at least; contents are not kept.
     /// SCREE_OUT_OF_MEMORY leaves *array NULL and *max_items 0.
     scree_status scree_device_reserve(scree_device *device, void *array, int64_t *max_items, int64_t num_items,
                                       size_t item_size);

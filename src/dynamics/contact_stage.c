@@ -42,10 +42,9 @@ scree_status scree_update_contacts(scree_simulation *simulation)
     scree_step_buffers *b = simulation->buffers;
     scree_broad_phase *broad_phase = &simulation->broad_phase;
 
-    // the present list becomes the old one; it keeps its order by pair as long as no search comes between
-    const scree_contact_list old = simulation->contacts;
-    simulation->contacts = simulation->old_contacts;
-    simulation->old_contacts = old;
+    // the old list keeps its order by pair as long as no search comes between
+    scree_contact_list_pass_on(&simulation->contacts, &simulation->old_contacts);
+    const scree_contact_list old = simulation->old_contacts;
 
     scree_bodies bodies;
     bodies.shapes = simulation->shape_views;

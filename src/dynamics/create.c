@@ -261,22 +261,30 @@ static scree_status allocate(scree_simulation *s)
     return is_complete ? SCREE_OK : SCREE_OUT_OF_MEMORY;
 }
 
-/// True if every contact acts in a point: all particles are spheres, and no law has a moment of its own for them.
-static bool are_contacts_points(const scree_simulation *s)
+/// What the contacts of the scene have no use for. Every contact acts in a point if all particles are spheres, and no
+/// law has a moment of its own for them.
+static void choose_contact_arrays(scree_simulation *s)
 {
-    bool has_extent = s->particles.num_particles == 0;
+    bool has_extent = s->particles.num_particles == 0, has_levers = false, has_rolling = false;
     for (int64_t i = 0; i < s->particles.num_particles && !has_extent; ++i)
         has_extent = s->shape_views[s->particles.shape[i]].kind != SCREE_KIND_SPHERE;
     for (int32_t k = 0; k < s->num_materials * s->num_materials; ++k)
-        has_extent |= s->laws[k].rolling != SCREE_ROLLING_NONE;
-    return !has_extent;
+    {
+        has_rolling |= s->laws[k].rolling != SCREE_ROLLING_NONE;
+        has_levers |= s->laws[k].model == SCREE_MODEL_ENERGY_CONSERVING;
+    }
+    s->contacts.acts_in_points = !has_extent && !has_rolling;
+    s->contacts.has_no_levers = !has_levers;
+    s->contacts.has_no_rolling = !has_rolling;
+    s->old_contacts.is_history = true;
+    scree_contact_list_share_uses(&s->old_contacts, &s->contacts);
 }
 
 /// Contacts and forces of time 0.
 static scree_status start(scree_simulation *s, scree_report *report)
 {
     s->buffers->skin = scree_skin_at_start(s);
-    s->contacts.acts_in_points = s->old_contacts.acts_in_points = are_contacts_points(s);
+    choose_contact_arrays(s);
     s->counters.smallest_critical_step = INFINITY;
     s->narrow_phase.options.scheme =
         strcmp(s->scene->solver.overlap_scheme, "hierarchy") == 0 ? SCREE_OVERLAP_HIERARCHY : SCREE_OVERLAP_FILTERED;

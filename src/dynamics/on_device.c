@@ -17,8 +17,8 @@ enum
     MAX_SHAPE = 1024
 };
 
-/// Arrays grow by half.
-#define SLACK 1.5
+/// Arrays grow by a quarter.
+#define SLACK 1.25
 
 // ---- memory
 
@@ -41,13 +41,13 @@ scree_device_memory scree_device_memory_of(const scree_simulation *simulation)
                           sizeof(int64_t);
     const size_t pair = sizeof(scree_candidate_pair) + 2 * sizeof(int32_t) + 2 * sizeof(uint64_t) + sizeof(int32_t) +
                         2 * sizeof(int64_t);
-    const size_t mesh_pair = sizeof(scree_overlap_result) + sizeof(scree_pair_memory) + 2 * sizeof(int32_t);
-    const size_t list =
-        sizeof(scree_candidate_pair) + sizeof(int32_t) + 9 * sizeof(scree_real) + 9 * sizeof(scree_vec3) + 2;
+    const size_t mesh_pair = sizeof(scree_pair_memory) + 2 * sizeof(int32_t);
+    const size_t contact = (size_t)scree_contact_list_bytes(&simulation->contacts) + sizeof(int64_t) + 1 +
+                           (has_meshes ? sizeof(scree_kept_overlap) : 0);
     scree_device_memory memory;
     memory.per_particle = (int64_t)(state + body + search);
     memory.per_pair = (int64_t)(SLACK * (double)(pair + (has_meshes ? mesh_pair : 0)));
-    memory.per_contact = (int64_t)(SLACK * (double)(2 * list + sizeof(int64_t) + 1));
+    memory.per_contact = (int64_t)(SLACK * (double)contact);
     const int64_t num = p->num_particles, num_pairs = simulation->counters.num_pairs,
                   num_contacts = simulation->counters.num_contacts;
     memory.num_pairs = num_pairs > BED_PAIRS * num ? num_pairs : BED_PAIRS * num;
@@ -144,7 +144,8 @@ static scree_status move(scree_simulation *there, scree_simulation *here)
 {
     scree_device *device = there->device;
     there->contacts.device = there->old_contacts.device = device;
-    there->contacts.acts_in_points = there->old_contacts.acts_in_points = here->contacts.acts_in_points;
+    there->old_contacts.is_history = true;
+    scree_contact_list_share_uses(&there->old_contacts, &here->contacts);
     there->broad_phase.device = there->narrow_phase.device = there->clock.device = device;
     there->clock.times = here->clock.times;
     there->narrow_phase.options = here->narrow_phase.options;

@@ -81,7 +81,7 @@ SCREE_FN void scree_contact_force_at(scree_contact_force_args a, int64_t c)
     scree_contact_kinematics k;
     k.volume = a.contacts.volume[c];
     k.indentation = a.contacts.indentation[c];
-    const bool has_extent = !a.contacts.acts_in_points;
+    const bool has_extent = !a.contacts.acts_in_points, has_rolling = has_extent && !a.contacts.has_no_rolling;
     k.radius = has_extent ? a.contacts.radius[c] : 0;
     k.normal = a.contacts.normal[c];
     k.relative_velocity = scree_relative_velocity(&bodies, pair.i, pair.j, a.contacts.arm[c]);
@@ -115,7 +115,7 @@ SCREE_FN void scree_contact_force_at(scree_contact_force_args a, int64_t c)
         k.tangential_stiffness = a.old_contacts.tangential_stiffness[old];
         if (has_extent) k.torsion = a.old_contacts.torsion[old];
         if (has_extent) k.radius_before = a.old_contacts.radius[old];
-        if (has_extent) k.rolling_moment = a.old_contacts.rolling_moment[old];
+        if (has_rolling) k.rolling_moment = a.old_contacts.rolling_moment[old];
         spring_energy = a.old_contacts.spring_energy[old];
         elastic_energy = a.old_contacts.elastic_energy[old];
     }
@@ -137,7 +137,7 @@ SCREE_FN void scree_contact_force_at(scree_contact_force_args a, int64_t c)
     a.contacts.moment[c] = f.moment;
     a.contacts.is_turning[c] = f.is_turning ? 1 : 0;
     a.contacts.torsion[c] = f.torsion;
-    a.contacts.rolling_moment[c] = f.rolling_moment;
+    if (has_rolling) a.contacts.rolling_moment[c] = f.rolling_moment;
 }
 
 #endif

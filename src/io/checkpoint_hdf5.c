@@ -298,7 +298,7 @@ static scree_status allocate_state(hid_t file, const scree_simulation *simulatio
     if (num_contacts < 0) return SCREE_READ_FAILED;
     scree_status status = scree_particles_create(&state->particles, simulation->particles.num_particles);
     // room for one contact at least, so that there are arrays; what a scene of spheres leaves untouched stays so
-    state->contacts.acts_in_points = simulation->contacts.acts_in_points;
+    scree_contact_list_share_uses(&state->contacts, &simulation->contacts);
     if (status == SCREE_OK)
         status = scree_contact_list_reserve(&state->contacts, num_contacts > 0 ? num_contacts : 1, 0);
     state->contacts.num_contacts = num_contacts;

@@ -113,9 +113,10 @@ static void find_overlaps_on(side &where)
     args.batch = kinds.batch;
     args.memory = where.zeros<scree_pair_memory>(num);
     args.active = where.make<int32_t>(num);
-    args.max_results = 1;
-    args.results = where.make<scree_overlap_result>(num);
-    args.num_results = where.make<int32_t>(num);
+    args.max_kept = num;
+    args.kept = where.make<scree_kept_overlap>(num);
+    args.kept_levers = where.make<scree_kept_lever>(num);
+    args.first_kept = where.make<int32_t>(num);
     args.list.first_of_pair = where.zeros<int64_t>(num_pairs + 1);
     args.tally = where.zeros<scree_pair_tally>(1);
     args.use = s->narrow_phase.separation;
@@ -132,10 +133,12 @@ static void find_overlaps_on(side &where)
     overlaps.meshes = args;
     overlaps.slices = where.copy(slices.data(), num_slices);
     overlaps.options = s->narrow_phase.options;
+    overlaps.results = where.make<scree_overlap_result>(num_slices);
+    overlaps.max_results = 1;
     overlaps.num_at_once = 3;
     overlaps.num_lanes = 8;
     LAUNCH_ON(where, scree_overlap_pairs, overlaps, num_slices);
-    where.keep(args.num_results, num);
+    where.keep(args.memory, num);
     const scree_pair_tally tally = where.read(args.tally, 1)[0];
     SCREE_CHECK(tally.num_active > 20 && tally.num_active < num && tally.num_lacking[SCREE_LACK_PIECES] == 0);
 
@@ -147,20 +150,6 @@ static void find_overlaps_on(side &where)
     args.list = empty_list(where, first, n);
     LAUNCH_ON(where, scree_mesh_write, args, num);
     keep_geometry(where, args.list, n);
-
-    // field by field, for there are gaps between them
-    const std::vector<int32_t> num_results = where.read(args.num_results, num);
-    const std::vector<scree_overlap_result> results = where.read(args.results, num);
-    for (int64_t m = 0; m < num; ++m)
-    {
-        if (num_results[(size_t)m] == 0) continue;
-        const scree_overlap_result &r = results[(size_t)m];
-        const int32_t marks[2] = {(int32_t)r.status, r.used_fallback};
-        const unsigned char *bytes = reinterpret_cast<const unsigned char *>(&r);
-        where.outcome.insert(where.outcome.end(), bytes, bytes + offsetof(scree_overlap_result, status));
-        bytes = reinterpret_cast<const unsigned char *>(marks);
-        where.outcome.insert(where.outcome.end(), bytes, bytes + sizeof marks);
-    }
 }
 
 static void test_overlaps() { check_two_sides(find_overlaps_on); }

@@ -55,8 +55,10 @@ struct side
         else std::memset(static_cast<void *>(array), 0, static_cast<size_t>(num) * sizeof(T));
         return array;
     }
+    /// NULL stays NULL.
     template <class T> T *copy(const T *values, int64_t num)
     {
+        if (values == nullptr) return nullptr;
         T *array = make<T>(num);
         if (num > 0) move(array, values, num, cudaMemcpyHostToDevice);
         return array;

@@ -31,6 +31,43 @@ static void test_growth_keeps_contents(void)
     scree_contact_list_destroy(&list);
 }
 
+/// Over several steps with more and fewer contacts: each finds the history of the one before, and room for itself.
+static void test_history_is_what_the_last_step_had(void)
+{
+    enum
+    {
+        MAX = 1000
+    };
+    static const int64_t nums[] = {3, 500, 2, MAX, 0, 7};
+    scree_contact_list present = {.has_no_levers = true, .has_no_rolling = true}, history = {.is_history = true};
+    scree_contact_list_share_uses(&history, &present);
+    static scree_candidate_pair bodies[MAX];
+    for (int32_t c = 0; c < MAX; ++c) bodies[c] = (scree_candidate_pair){c, c + 1};
+    for (int32_t step = 0; step < 6; ++step)
+    {
+        scree_contact_list_pass_on(&present, &history);
+        SCREE_CHECK_INT(history.num_contacts, step > 0 ? nums[step - 1] : 0);
+        fill(&present, bodies, nums[step]);
+        for (int64_t c = 0; c < history.num_contacts; ++c)
+            SCREE_CHECK(history.spring_energy[c] == (scree_real)(100 * step - 100) + (scree_real)c &&
+                        history.bodies[c].j == c + 1 && history.first_of_pair[c] == c);
+        for (int64_t c = 0; c < present.num_contacts; ++c)
+        {
+            present.spring_energy[c] = (scree_real)(100 * step) + (scree_real)c;
+            SCREE_CHECK(scree_vec3_length(present.rolling_moment[c]) == 0 &&
+                        scree_vec3_length(present.area_vector[c]) == 0);
+        }
+    }
+    SCREE_CHECK(history.normal_force == NULL && history.volume == NULL && present.max_contacts >= MAX);
+    // of a contact once more what goes on to the next step: ids, patch, radius, arm, spring, stiffness, torsion,
+    // energies
+    const int64_t once = 8 + 4 + 2 + (int64_t)sizeof(scree_real) * (10 + 18),
+                  carried = 8 + 4 + (int64_t)sizeof(scree_real) * (5 + 6);
+    SCREE_CHECK_INT(scree_contact_list_bytes(&present), once + carried);
+    scree_contact_list_destroy(&present);
+    scree_contact_list_destroy(&history);
+}
+
 static void test_validate_finds_faults(void)
 {
     scree_contact_list list = {0};
@@ -153,6 +190,7 @@ static void test_patches_find_the_nearest(void)
 int main(void)
 {
     SCREE_RUN(test_growth_keeps_contents);
+    SCREE_RUN(test_history_is_what_the_last_step_had);
     SCREE_RUN(test_validate_finds_faults);
     SCREE_RUN(test_history_follows_pairs);
     SCREE_RUN(test_patches_find_the_nearest);

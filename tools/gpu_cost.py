@@ -71,7 +71,7 @@ SPHERE_KERNELS = [
      dict(own="pairs:pair bodies:pair patch:int32 volume:real indentation:real normal:vec3 arm:vec3", near="spheres:sphere", far="spheres:sphere"),
      None),
 ]
-NOT_IN_POINTS = {"radius", "moment", "torsion", "rolling_moment", "is_turning"}
+NOT_IN_POINTS = {"radius", "moment", "torsion", "is_turning"}
 
 # which kernels a stage of scree bench is made of; a search comes every some steps and is not in the model
 STAGES = {"predict": ("scree_predict",), "travel": ("scree_travel",),

@@ -1,50 +1,89 @@
 /// \file sphere_contacts_cpu.c
-/// Contacts of touching spheres to the list on the CPU: of a block of candidate pairs those that touch are picked
-/// without a branch, for it cannot be foreseen, and then worked on in groups of lanes (lanes.h).
+/// Pairs of spheres on the CPU, in groups of lanes (lanes.h): which of them touch, and the contacts of those that do,
+/// picked from a block of pairs without a branch, for it cannot be foreseen.
 #include "contact/sphere_pairs.h"
 #include "contact/touching_pairs.h"
 #include "core/lanes.h"
 
+SCREE_DEFINE_LAUNCH_ON(scree_sphere_sphere_count)
 SCREE_DEFINE_LAUNCH_ON(scree_sphere_sphere_write)
 
+/// The spheres of a group of pairs.
 typedef struct scree_sphere_group
 {
-    scree_lanes_vec3 centre_i, centre_j, normal, arm;
-    scree_real radius_i[SCREE_LANES], radius_j[SCREE_LANES], volume[SCREE_LANES], indentation[SCREE_LANES];
+    int32_t i[SCREE_LANES], j[SCREE_LANES];
+    scree_lanes_vec3 centre_i, centre_j;
+    scree_real radius_i[SCREE_LANES], radius_j[SCREE_LANES];
 } scree_sphere_group;
 
-SCREE_LANES_FUNCTION static void geometry_of_lanes(scree_sphere_group *restrict g)
+static void load_group(scree_sphere_group *restrict g, const scree_sphere_pairs_args *restrict a, const int32_t *p)
 {
     for (int l = 0; l < SCREE_LANES; ++l)
     {
-        const scree_sphere i = {scree_lanes_get(&g->centre_i, l), g->radius_i[l]};
-        const scree_sphere j = {scree_lanes_get(&g->centre_j, l), g->radius_j[l]};
-        const scree_sphere_pair_geometry geometry = scree_touching_pair(i, j);
-        scree_lanes_set(&g->normal, l, geometry.normal);
-        scree_lanes_set(&g->arm, l, geometry.arm);
-        g->volume[l] = geometry.volume;
-        g->indentation[l] = geometry.indentation;
+        g->i[l] = a->pairs[p[l]].i;
+        g->j[l] = a->pairs[p[l]].j;
     }
+    scree_lanes_gather(&g->centre_i, g->radius_i, a->spheres, sizeof *a->spheres, g->i);
+    scree_lanes_gather(&g->centre_j, g->radius_j, a->spheres, sizeof *a->spheres, g->j);
 }
 
-/// Group of touching pairs.
-static void write_group(const scree_sphere_pairs_args *a, const int32_t *touching)
+/// Which of a group of pairs touch.
+SCREE_LANES_FUNCTION static void count_group(const scree_sphere_pairs_args *a, const int32_t *p)
 {
     scree_sphere_group g;
+    load_group(&g, a, p);
+    int64_t num[SCREE_LANES];
     for (int l = 0; l < SCREE_LANES; ++l)
     {
-        const scree_candidate_pair pair = a->pairs[touching[l]];
-        scree_lanes_set(&g.centre_i, l, a->spheres[pair.i].centre);
-        scree_lanes_set(&g.centre_j, l, a->spheres[pair.j].centre);
-        g.radius_i[l] = a->spheres[pair.i].radius;
-        g.radius_j[l] = a->spheres[pair.j].radius;
+        const scree_vec3 between = scree_vec3_sub(scree_lanes_get(&g.centre_i, l), scree_lanes_get(&g.centre_j, l));
+        num[l] = scree_spheres_touch(between, g.radius_i[l] + g.radius_j[l]) ? 1 : 0;
     }
-    geometry_of_lanes(&g);
+    for (int l = 0; l < SCREE_LANES; ++l) a->list.first_of_pair[p[l]] = num[l];
+}
+
+void scree_sphere_sphere_count_launch(scree_sphere_sphere_count_args args, int64_t num)
+{
+    const int64_t num_groups = num / SCREE_LANES;
+#pragma omp parallel for schedule(static) if (num >= SCREE_LAUNCH_MIN)
+    for (int64_t k = 0; k < num_groups; ++k) count_group(&args, args.batch + k * SCREE_LANES);
+    for (int64_t b = num_groups * SCREE_LANES; b < num; ++b) scree_sphere_sphere_count_at(args, b);
+}
+
+/// Contacts of a group of touching pairs.
+SCREE_LANES_FUNCTION static void write_group(const scree_sphere_pairs_args *a, const int32_t *touching)
+{
+    scree_sphere_group g;
+    load_group(&g, a, touching);
+    scree_lanes_vec3 normal, arm;
+    scree_real volume[SCREE_LANES], indentation[SCREE_LANES];
     for (int l = 0; l < SCREE_LANES; ++l)
     {
-        const scree_sphere_pair_geometry geometry = {scree_lanes_get(&g.normal, l), scree_lanes_get(&g.arm, l),
-                                                     g.volume[l], g.indentation[l]};
-        scree_write_sphere_pair(a->list, touching[l], a->pairs[touching[l]], geometry);
+        const scree_sphere i = {scree_lanes_get(&g.centre_i, l), g.radius_i[l]};
+        const scree_sphere j = {scree_lanes_get(&g.centre_j, l), g.radius_j[l]};
+        const scree_sphere_pair_geometry geometry = scree_touching_pair(i, j);
+        scree_lanes_set(&normal, l, geometry.normal);
+        scree_lanes_set(&arm, l, geometry.arm);
+        volume[l] = geometry.volume;
+        indentation[l] = geometry.indentation;
+    }
+    const scree_contact_list list = a->list;
+    const int64_t c = list.first_of_pair[touching[0]];
+    if (list.acts_in_points && list.first_of_pair[touching[SCREE_LANES - 1]] == c + SCREE_LANES - 1)
+    {
+        // no contacts of other kinds between them
+        for (int l = 0; l < SCREE_LANES; ++l) list.bodies[c + l] = a->pairs[touching[l]];
+        for (int l = 0; l < SCREE_LANES; ++l) list.patch[c + l] = 0;
+        scree_lanes_copy(list.volume + c, volume);
+        scree_lanes_copy(list.indentation + c, indentation);
+        scree_lanes_store(list.normal + c, &normal);
+        scree_lanes_store(list.arm + c, &arm);
+        return;
+    }
+    for (int l = 0; l < SCREE_LANES; ++l)
+    {
+        const scree_sphere_pair_geometry geometry = {scree_lanes_get(&normal, l), scree_lanes_get(&arm, l), volume[l],
+                                                     indentation[l]};
+        scree_write_sphere_pair(list, touching[l], a->pairs[touching[l]], geometry);
     }
 }
 

@@ -16,6 +16,26 @@
 #define SCREE_LANES_FUNCTION __attribute__((flatten, target_clones("avx2", "default")))
 #else
 #define SCREE_LANES_FUNCTION __attribute__((flatten))
+/// The way back, to SCREE_LANES items of `size` bytes from `items` on.
+static inline void scree_lanes_scatter(void *items, int64_t size, const scree_lanes_vec3 *lanes,
+                                       const scree_real *fourth)
+{
+    char *bytes = items;
+    for (int l = 0; l < SCREE_LANES; l += 4)
+    {
+        const scree_quad x = *(const scree_loose_quad *)(lanes->x + l), y = *(const scree_loose_quad *)(lanes->y + l),
+                         z = *(const scree_loose_quad *)(lanes->z + l), w = *(const scree_loose_quad *)(fourth + l);
+        const scree_quad a = __builtin_shufflevector(x, y, 0, 4, 2, 6);
+        const scree_quad b = __builtin_shufflevector(x, y, 1, 5, 3, 7);
+        const scree_quad c = __builtin_shufflevector(z, w, 0, 4, 2, 6);
+        const scree_quad d = __builtin_shufflevector(z, w, 1, 5, 3, 7);
+        *(scree_loose_quad *)(bytes + l * size) = __builtin_shufflevector(a, c, 0, 1, 4, 5);
+        *(scree_loose_quad *)(bytes + (l + 1) * size) = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+        *(scree_loose_quad *)(bytes + (l + 2) * size) = __builtin_shufflevector(a, c, 2, 3, 6, 7);
+        *(scree_loose_quad *)(bytes + (l + 3) * size) = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+    }
+}
+
 #endif
 
 /// Items of a group.
@@ -85,6 +105,9 @@ static inline void scree_lanes_store(scree_vec3 *first, const scree_lanes_vec3 *
     }
 }
 
+/// Items 0, 1, ... of an array, for scree_lanes_gather().
+static const int32_t scree_lanes_in_order[SCREE_LANES] = {0, 1, 2, 3, 4, 5, 6, 7};
+
 /// The first four numbers, a vector and a fourth one, of the items `index` of an array of items of `size` bytes.
 static inline void scree_lanes_gather(scree_lanes_vec3 *lanes, scree_real *fourth, const void *items, int64_t size,
                                       const int32_t *index)
@@ -104,6 +127,26 @@ static inline void scree_lanes_gather(scree_lanes_vec3 *lanes, scree_real *fourt
         *(scree_loose_quad *)(lanes->y + l) = __builtin_shufflevector(b, d, 0, 1, 4, 5);
         *(scree_loose_quad *)(lanes->z + l) = __builtin_shufflevector(a, c, 2, 3, 6, 7);
         *(scree_loose_quad *)(fourth + l) = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+    }
+}
+
+/// The way back, to SCREE_LANES items of `size` bytes from `items` on.
+static inline void scree_lanes_scatter(void *items, int64_t size, const scree_lanes_vec3 *lanes,
+                                       const scree_real *fourth)
+{
+    char *bytes = items;
+    for (int l = 0; l < SCREE_LANES; l += 4)
+    {
+        const scree_quad x = *(const scree_loose_quad *)(lanes->x + l), y = *(const scree_loose_quad *)(lanes->y + l),
+                         z = *(const scree_loose_quad *)(lanes->z + l), w = *(const scree_loose_quad *)(fourth + l);
+        const scree_quad a = __builtin_shufflevector(x, y, 0, 4, 2, 6);
+        const scree_quad b = __builtin_shufflevector(x, y, 1, 5, 3, 7);
+        const scree_quad c = __builtin_shufflevector(z, w, 0, 4, 2, 6);
+        const scree_quad d = __builtin_shufflevector(z, w, 1, 5, 3, 7);
+        *(scree_loose_quad *)(bytes + l * size) = __builtin_shufflevector(a, c, 0, 1, 4, 5);
+        *(scree_loose_quad *)(bytes + (l + 1) * size) = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+        *(scree_loose_quad *)(bytes + (l + 2) * size) = __builtin_shufflevector(a, c, 2, 3, 6, 7);
+        *(scree_loose_quad *)(bytes + (l + 3) * size) = __builtin_shufflevector(b, d, 2, 3, 6, 7);
     }
 }
 

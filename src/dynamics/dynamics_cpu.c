@@ -1,7 +1,5 @@
 #include "dynamics/dynamics.h"
 
-SCREE_DEFINE_LAUNCH(scree_predict)
-SCREE_DEFINE_LAUNCH(scree_correct)
 SCREE_DEFINE_LAUNCH(scree_boxes)
 SCREE_DEFINE_LAUNCH(scree_travel)
 SCREE_DEFINE_LAUNCH(scree_place_walls)

@@ -50,43 +50,83 @@ SCREE_FN scree_quat scree_rotate(scree_quat q, scree_vec3 angular_momentum, scre
     return scree_turned(q, a);
 }
 
-/// First half kick, then drift, of particle i.
-SCREE_FN void scree_predict_at(scree_predict_args a, int64_t i)
+/// What moves of a particle.
+typedef struct scree_moving_state
 {
-    const scree_real dt = a.time_step, half = dt * (scree_real)0.5;
-    const scree_real half_over_mass = half / a.particles.mass[i];
-    const scree_vec3 force = a.particles.force[i], torque = a.particles.torque[i];
-    const scree_vec3 velocity = scree_vec3_add_scaled(a.particles.velocity[i], force, half_over_mass);
-    const scree_vec3 momentum = scree_vec3_add_scaled(a.particles.angular_momentum[i], torque, half);
-    const scree_vec3 position = scree_vec3_add_scaled(a.particles.position[i], velocity, dt);
-    const scree_vec3 end_momentum = scree_vec3_add_scaled(momentum, torque, half);
-    const scree_vec3 inertia = a.particles.inertia[i];
-    scree_quat orientation;
-    scree_vec3 angular_velocity;
-    if (scree_is_isotropic(inertia))
+    scree_vec3 position;         ///< [m]
+    scree_quat orientation;      ///< body frame to world
+    scree_vec3 velocity;         ///< [m/s]
+    scree_vec3 angular_momentum; ///< [kg m^2/s]
+} scree_moving_state;
+
+/// What acts on it, and its inertia.
+typedef struct scree_load
+{
+    scree_vec3 force;   ///< [N]
+    scree_vec3 torque;  ///< [N m]
+    scree_real mass;    ///< [kg]
+    scree_vec3 inertia; ///< [kg m^2]
+} scree_load;
+
+/// Velocities of a particle.
+typedef struct scree_velocities
+{
+    scree_vec3 velocity;         ///< [m/s]
+    scree_vec3 angular_velocity; ///< [rad/s]
+} scree_velocities;
+
+/// First half kick, then drift. Returns estimates of the velocities at the end of the step.
+SCREE_FN scree_velocities scree_half_kick_and_drift(scree_moving_state *state, const scree_load *load,
+                                                    bool is_isotropic, scree_real dt)
+{
+    const scree_real half = dt * (scree_real)0.5, half_over_mass = half / load->mass;
+    state->velocity = scree_vec3_add_scaled(state->velocity, load->force, half_over_mass);
+    state->angular_momentum = scree_vec3_add_scaled(state->angular_momentum, load->torque, half);
+    state->position = scree_vec3_add_scaled(state->position, state->velocity, dt);
+    const scree_vec3 end_momentum = scree_vec3_add_scaled(state->angular_momentum, load->torque, half);
+    scree_velocities end;
+    end.velocity = scree_vec3_add_scaled(state->velocity, load->force, half_over_mass);
+    if (is_isotropic)
     {
         // as below, but one quotient and no matrices
-        const scree_real inverse = 1 / inertia.x;
-        const scree_vec3 turning = scree_vec3_scale(momentum, inverse);
-        orientation = scree_turned(a.particles.orientation[i], scree_vec3_scale(turning, dt * (scree_real)0.25));
-        angular_velocity = scree_vec3_scale(end_momentum, inverse);
+        const scree_real inverse = 1 / load->inertia.x;
+        const scree_vec3 turning = scree_vec3_scale(state->angular_momentum, inverse);
+        state->orientation = scree_turned(state->orientation, scree_vec3_scale(turning, dt * (scree_real)0.25));
+        end.angular_velocity = scree_vec3_scale(end_momentum, inverse);
     }
     else
     {
-        orientation = scree_rotate(a.particles.orientation[i], momentum, inertia, dt);
-        angular_velocity = scree_angular_velocity(end_momentum, inertia, orientation);
+        state->orientation = scree_rotate(state->orientation, state->angular_momentum, load->inertia, dt);
+        end.angular_velocity = scree_angular_velocity(end_momentum, load->inertia, state->orientation);
     }
-    a.particles.velocity[i] = velocity;
-    a.particles.angular_momentum[i] = momentum;
-    a.particles.position[i] = position;
-    a.particles.orientation[i] = orientation;
+    return end;
+}
 
-    // where the body will be, and how fast if the forces stayed as they were: second order for damping too
-    a.pose[i].position = position;
-    a.pose[i].orientation = orientation;
+/// First half kick, then drift, of particle i.
+SCREE_FN void scree_predict_at(scree_predict_args a, int64_t i)
+{
+    scree_moving_state state;
+    state.position = a.particles.position[i];
+    state.orientation = a.particles.orientation[i];
+    state.velocity = a.particles.velocity[i];
+    state.angular_momentum = a.particles.angular_momentum[i];
+    scree_load load;
+    load.force = a.particles.force[i];
+    load.torque = a.particles.torque[i];
+    load.mass = a.particles.mass[i];
+    load.inertia = a.particles.inertia[i];
+    const scree_velocities end =
+        scree_half_kick_and_drift(&state, &load, scree_is_isotropic(load.inertia), a.time_step);
+
+    a.particles.position[i] = state.position;
+    a.particles.orientation[i] = state.orientation;
+    a.particles.velocity[i] = state.velocity;
+    a.particles.angular_momentum[i] = state.angular_momentum;
+    a.pose[i].position = state.position;
+    a.pose[i].orientation = state.orientation;
     a.pose[i].scale = a.particles.scale[i];
-    a.moving[i].velocity = scree_vec3_add_scaled(velocity, force, half_over_mass);
-    a.moving[i].angular_velocity = angular_velocity;
+    a.moving[i].velocity = end.velocity;
+    a.moving[i].angular_velocity = end.angular_velocity;
 }
 
 typedef struct scree_correct_args
@@ -97,20 +137,41 @@ typedef struct scree_correct_args
     scree_step_tally *tally;   ///< learns of a particle whose position or momentum is not finite
 } scree_correct_args;
 
+SCREE_FN void scree_second_half_kick(scree_moving_state *state, const scree_load *load, scree_real dt)
+{
+    const scree_real half = dt * (scree_real)0.5;
+    state->velocity = scree_vec3_add_scaled(state->velocity, load->force, half / load->mass);
+    state->angular_momentum = scree_vec3_add_scaled(state->angular_momentum, load->torque, half);
+}
+
+/// Not a number or infinite if a part of the position or of the momentum is.
+SCREE_FN scree_real scree_sum_of_state(const scree_moving_state *state)
+{
+    const scree_vec3 x = state->position, l = state->angular_momentum;
+    return x.x + x.y + x.z + l.x + l.y + l.z;
+}
+
 /// Second half kick of particle i.
 SCREE_FN void scree_correct_at(scree_correct_args a, int64_t i)
 {
-    const scree_real half = a.time_step * (scree_real)0.5;
-    const scree_vec3 velocity =
-        scree_vec3_add_scaled(a.particles.velocity[i], a.particles.force[i], half / a.particles.mass[i]);
-    const scree_vec3 momentum = scree_vec3_add_scaled(a.particles.angular_momentum[i], a.particles.torque[i], half);
-    const scree_vec3 x = a.particles.position[i];
-    a.particles.velocity[i] = velocity;
-    a.particles.angular_momentum[i] = momentum;
-    a.moving[i].velocity = velocity;
-    const scree_real sum = x.x + x.y + x.z + momentum.x + momentum.y + momentum.z;
+    scree_moving_state state;
+    state.position = a.particles.position[i];
+    state.orientation = a.particles.orientation[i];
+    state.velocity = a.particles.velocity[i];
+    state.angular_momentum = a.particles.angular_momentum[i];
+    scree_load load;
+    load.force = a.particles.force[i];
+    load.torque = a.particles.torque[i];
+    load.mass = a.particles.mass[i];
+    load.inertia = a.particles.inertia[i];
+    scree_second_half_kick(&state, &load, a.time_step);
+
+    a.particles.velocity[i] = state.velocity;
+    a.particles.angular_momentum[i] = state.angular_momentum;
+    a.moving[i].velocity = state.velocity;
+    a.moving[i].angular_velocity = scree_angular_velocity(state.angular_momentum, load.inertia, state.orientation);
+    const scree_real sum = scree_sum_of_state(&state);
     if (!(sum - sum == 0)) scree_atomic_max(&a.tally->num_from_unstable, (scree_real)(a.particles.num_particles - i));
-    a.moving[i].angular_velocity = scree_angular_velocity(momentum, a.particles.inertia[i], a.particles.orientation[i]);
 }
 
 #endif

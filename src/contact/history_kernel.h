@@ -22,6 +22,11 @@ typedef struct scree_history_match_args
     uint8_t *is_continued;   ///< (num_old) out: 1 where an old contact goes on; zeroed before
 } scree_history_match_args;
 
+SCREE_FN bool scree_history_is_before(scree_candidate_pair a, scree_candidate_pair b)
+{
+    return a.i < b.i || (a.i == b.i && a.j < b.j);
+}
+
 /// First old contact whose pair is not smaller than (i, j).
 SCREE_FN int64_t scree_history_lower_bound(const scree_candidate_pair *bodies, int64_t num, scree_candidate_pair key)
 {
@@ -29,8 +34,7 @@ SCREE_FN int64_t scree_history_lower_bound(const scree_candidate_pair *bodies, i
     while (low < high)
     {
         const int64_t middle = low + (high - low) / 2;
-        const scree_candidate_pair b = bodies[middle];
-        if (b.i < key.i || (b.i == key.i && b.j < key.j)) low = middle + 1;
+        if (scree_history_is_before(bodies[middle], key)) low = middle + 1;
         else high = middle;
     }
     return low;
@@ -49,25 +53,11 @@ SCREE_FN bool scree_history_same_part(int32_t patch, int32_t old_patch)
     return patch >> SCREE_PATCH_BITS == old_patch >> SCREE_PATCH_BITS;
 }
 
-/// All contacts of candidate pair p. Several patches of one part take their nearest old patch that is still free,
-/// in ascending order of patch.
-SCREE_FN void scree_history_match_at(scree_history_match_args a, int64_t p)
+/// All contacts of candidate pair p, with old ones old_begin .. old_end - 1. Several patches of one part take their
+/// nearest old patch that is still free, in ascending order of patch.
+SCREE_FN void scree_history_match_pair(scree_history_match_args a, int64_t p, int64_t old_begin, int64_t old_end)
 {
     const int64_t begin = a.first_of_pair[p], end = a.first_of_pair[p + 1];
-    if (begin == end) return;
-    const scree_candidate_pair key = a.pairs[p];
-    int64_t old_begin, old_end;
-    if (a.old_first_of_pair)
-    {
-        old_begin = a.old_first_of_pair[p];
-        old_end = a.old_first_of_pair[p + 1];
-    }
-    else
-    {
-        old_begin = scree_history_lower_bound(a.old_bodies, a.num_old, key);
-        old_end = old_begin;
-        while (old_end < a.num_old && a.old_bodies[old_end].i == key.i && a.old_bodies[old_end].j == key.j) ++old_end;
-    }
     if (end - begin == 1 && old_end - old_begin == 1 && scree_history_same_part(a.patch[begin], a.old_patch[old_begin]))
     {
         a.old_of_contact[begin] = old_begin;
@@ -91,6 +81,29 @@ SCREE_FN void scree_history_match_at(scree_history_match_args a, int64_t p)
         a.old_of_contact[c] = best;
         if (best >= 0) a.is_continued[best] = 1;
     }
+}
+
+/// The end of the old contacts of a pair that start at `begin`.
+SCREE_FN int64_t scree_history_end_of_pair(const scree_candidate_pair *bodies, int64_t num, int64_t begin,
+                                           scree_candidate_pair key)
+{
+    int64_t end = begin;
+    while (end < num && bodies[end].i == key.i && bodies[end].j == key.j) ++end;
+    return end;
+}
+
+/// All contacts of candidate pair p.
+SCREE_FN void scree_history_match_at(scree_history_match_args a, int64_t p)
+{
+    if (a.first_of_pair[p] == a.first_of_pair[p + 1]) return;
+    if (a.old_first_of_pair)
+    {
+        scree_history_match_pair(a, p, a.old_first_of_pair[p], a.old_first_of_pair[p + 1]);
+        return;
+    }
+    const int64_t old_begin = scree_history_lower_bound(a.old_bodies, a.num_old, a.pairs[p]);
+    const int64_t old_end = scree_history_end_of_pair(a.old_bodies, a.num_old, old_begin, a.pairs[p]);
+    scree_history_match_pair(a, p, old_begin, old_end);
 }
 
 #endif

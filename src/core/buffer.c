@@ -10,7 +10,7 @@ enum
 {
     ALIGNMENT = 64,
     LARGE_PAGE = 1 << 21,
-    MIN_LARGE_BYTES = 1 << 23 ///< from here on large pages waste little
+    MIN_LARGE_BYTES = 1 << 21
 };
 
 void *scree_buffer_alloc(int64_t num_items, size_t item_size)
@@ -22,9 +22,9 @@ void *scree_buffer_alloc(int64_t num_items, size_t item_size)
     // a step goes over dozens of arrays at once: with small pages their addresses are more than a processor remembers
     if (num_bytes >= MIN_LARGE_BYTES)
     {
-        const size_t whole_pages = (num_bytes / LARGE_PAGE + 1) * LARGE_PAGE;
-        void *memory = aligned_alloc(LARGE_PAGE, whole_pages);
-        if (memory != NULL) (void)madvise(memory, whole_pages, MADV_HUGEPAGE); // a wish; it may be refused
+        // a wish; it may be refused. What does not fill a large page lies in small ones
+        void *memory = aligned_alloc(LARGE_PAGE, (num_bytes / ALIGNMENT + 1) * ALIGNMENT);
+        if (memory != NULL) (void)madvise(memory, num_bytes / LARGE_PAGE * LARGE_PAGE, MADV_HUGEPAGE);
         return memory;
     }
 #endif

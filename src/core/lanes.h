@@ -16,26 +16,6 @@
 #define SCREE_LANES_FUNCTION __attribute__((flatten, target_clones("avx2", "default")))
 #else
 #define SCREE_LANES_FUNCTION __attribute__((flatten))
-/// The way back, to SCREE_LANES items of `size` bytes from `items` on.
-static inline void scree_lanes_scatter(void *items, int64_t size, const scree_lanes_vec3 *lanes,
-                                       const scree_real *fourth)
-{
-    char *bytes = items;
-    for (int l = 0; l < SCREE_LANES; l += 4)
-    {
-        const scree_quad x = *(const scree_loose_quad *)(lanes->x + l), y = *(const scree_loose_quad *)(lanes->y + l),
-                         z = *(const scree_loose_quad *)(lanes->z + l), w = *(const scree_loose_quad *)(fourth + l);
-        const scree_quad a = __builtin_shufflevector(x, y, 0, 4, 2, 6);
-        const scree_quad b = __builtin_shufflevector(x, y, 1, 5, 3, 7);
-        const scree_quad c = __builtin_shufflevector(z, w, 0, 4, 2, 6);
-        const scree_quad d = __builtin_shufflevector(z, w, 1, 5, 3, 7);
-        *(scree_loose_quad *)(bytes + l * size) = __builtin_shufflevector(a, c, 0, 1, 4, 5);
-        *(scree_loose_quad *)(bytes + (l + 1) * size) = __builtin_shufflevector(b, d, 0, 1, 4, 5);
-        *(scree_loose_quad *)(bytes + (l + 2) * size) = __builtin_shufflevector(a, c, 2, 3, 6, 7);
-        *(scree_loose_quad *)(bytes + (l + 3) * size) = __builtin_shufflevector(b, d, 2, 3, 6, 7);
-    }
-}
-
 #endif
 
 /// Items of a group.
@@ -59,6 +39,14 @@ static inline void scree_lanes_set(scree_lanes_vec3 *lanes, int lane, scree_vec3
 static inline void scree_lanes_copy(scree_real *to, const scree_real *from)
 {
     for (int l = 0; l < SCREE_LANES; ++l) to[l] = from[l];
+}
+
+/// Is a truth, 1 or 0, nowhere 1?
+static inline bool scree_lanes_is_none(const scree_real *truth)
+{
+    scree_real num = 0;
+    for (int l = 0; l < SCREE_LANES; ++l) num += truth[l];
+    return !(num > 0);
 }
 
 static inline scree_vec3 scree_lanes_get(const scree_lanes_vec3 *lanes, int lane)

@@ -29,9 +29,9 @@ static void load_group(scree_particle_group *restrict g, const scree_particles *
 static bool load_isotropic(scree_particle_group *g, const scree_particles *particles, int64_t first)
 {
     scree_lanes_load(&g->inertia, particles->inertia + first);
-    bool is_isotropic = true;
-    for (int l = 0; l < SCREE_LANES; ++l) is_isotropic &= scree_is_isotropic(scree_lanes_get(&g->inertia, l));
-    return is_isotropic;
+    scree_real is_other[SCREE_LANES];
+    for (int l = 0; l < SCREE_LANES; ++l) is_other[l] = scree_is_isotropic(scree_lanes_get(&g->inertia, l)) ? 0 : 1;
+    return scree_lanes_is_none(is_other);
 }
 
 static void store_velocities(const scree_particle_group *g, scree_moving_body *moving)
@@ -106,9 +106,9 @@ SCREE_LANES_FUNCTION static bool correct_group(const scree_correct_args *a, int6
         scree_lanes_set(&g.end_angular_velocity, l, scree_vec3_scale(state.angular_momentum, 1 / load.inertia.x));
         sums[l] = scree_sum_of_state(&state);
     }
-    bool is_finite = true;
-    for (int l = 0; l < SCREE_LANES; ++l) is_finite &= sums[l] - sums[l] == 0;
-    if (!is_finite) return false;
+    scree_real is_other[SCREE_LANES];
+    for (int l = 0; l < SCREE_LANES; ++l) is_other[l] = sums[l] - sums[l] == 0 ? 0 : 1;
+    if (!scree_lanes_is_none(is_other)) return false;
     scree_lanes_store(particles.velocity + first, &g.end_velocity);
     scree_lanes_store(particles.angular_momentum + first, &g.angular_momentum);
     store_velocities(&g, a->moving + first);

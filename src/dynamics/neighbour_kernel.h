@@ -56,11 +56,13 @@ SCREE_FN void scree_boxes_at(scree_boxes_args a, int64_t i)
     a.radii[i] = radius + margin;
 }
 
+SCREE_FN scree_real scree_shift(scree_vec3 from, scree_vec3 to) { return scree_vec3_length(scree_vec3_sub(to, from)); }
+
 /// Upper bound of how far the surface of a body has moved from one pose to the other. With R the bounding radius:
 /// |x1 - x0| + 2 sin(angle/2) R; a sphere that turns stays where it is.
 SCREE_FN scree_real scree_displacement(const scree_shape_view *shape, const scree_pose *from, const scree_pose *to)
 {
-    const scree_real shift = scree_vec3_length(scree_vec3_sub(to->position, from->position));
+    const scree_real shift = scree_shift(from->position, to->position);
     if (shape->kind == SCREE_KIND_SPHERE) return shift;
     const scree_quat turn = scree_quat_multiply(to->orientation, scree_quat_conjugate(from->orientation));
     const scree_real sine = scree_sqrt(turn.x * turn.x + turn.y * turn.y + turn.z * turn.z);

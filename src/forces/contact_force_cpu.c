@@ -15,7 +15,8 @@ typedef struct scree_force_group
     scree_real old_elastic_energy[SCREE_LANES], old_spring_energy[SCREE_LANES];
     scree_lanes_vec3 normal_force, tangential_force;
     scree_real elastic_force[SCREE_LANES], elastic_energy[SCREE_LANES], spring_energy[SCREE_LANES];
-    scree_real slip[SCREE_LANES]; ///< 1 or 0
+    scree_real limit[SCREE_LANES]; ///< [N] of friction
+    scree_real slip[SCREE_LANES];  ///< 1 or 0
 } scree_force_group;
 
 static void load_history(scree_force_group *restrict g, const scree_contact_list *restrict old_list,
@@ -55,6 +56,29 @@ static void load_group(scree_force_group *restrict g, const scree_contact_force_
     load_history(g, &a->old_contacts, a->old_of_contact + first);
 }
 
+/// The Coulomb limit. In a bed at rest few contacts reach it, and roots and quotients take most of the time of a law.
+static void limit_of_lanes(scree_force_group *restrict g)
+{
+    scree_real is_reached[SCREE_LANES];
+    for (int l = 0; l < SCREE_LANES; ++l)
+    {
+        const bool is_slipping = scree_is_longer(scree_lanes_get(&g->tangential_force, l), g->limit[l]);
+        const bool is_cut = scree_is_longer(scree_lanes_get(&g->spring_force, l), g->limit[l]);
+        is_reached[l] = (is_slipping | is_cut) ? 1 : 0;
+        g->slip[l] = is_slipping ? 1 : 0;
+    }
+    if (scree_lanes_is_none(is_reached)) return;
+    for (int l = 0; l < SCREE_LANES; ++l)
+    {
+        scree_contact_force f;
+        f.tangential_force = scree_lanes_get(&g->tangential_force, l);
+        f.spring_force = scree_lanes_get(&g->spring_force, l);
+        scree_friction_limit(g->limit[l], &f);
+        scree_lanes_set(&g->tangential_force, l, f.tangential_force);
+        scree_lanes_set(&g->spring_force, l, f.spring_force);
+    }
+}
+
 /// The lane loop, with a law whose choices are known here.
 static void law_of_lanes(scree_force_group *restrict g, const scree_force_law *law, int32_t model, scree_real time_step)
 {
@@ -76,16 +100,18 @@ static void law_of_lanes(scree_force_group *restrict g, const scree_force_law *l
         k.spring_force = scree_lanes_get(&g->spring_force, l);
         k.tangential_stiffness = g->tangential_stiffness[l];
         scree_contact_force f;
-        scree_contact_law(&known, &k, &f);
+        const scree_real normal_force = scree_contact_law_without_limit(&known, &k, &f);
         scree_lanes_set(&g->normal_force, l, f.normal_force);
         scree_lanes_set(&g->tangential_force, l, f.tangential_force);
         scree_lanes_set(&g->spring_force, l, f.spring_force);
         g->elastic_force[l] = f.elastic_force;
         g->elastic_energy[l] = f.elastic_energy;
-        g->spring_energy[l] = f.spring_energy;
         g->tangential_stiffness[l] = f.tangential_stiffness;
-        g->slip[l] = f.is_slipping ? 1 : 0;
+        g->limit[l] = scree_coulomb_limit(&known, normal_force);
     }
+    limit_of_lanes(g);
+    for (int l = 0; l < SCREE_LANES; ++l)
+        g->spring_energy[l] = scree_spring_energy(scree_lanes_get(&g->spring_force, l), g->tangential_stiffness[l]);
 }
 
 static void store_group(const scree_force_group *restrict g, const scree_contact_list *restrict list, int64_t first)

@@ -15,7 +15,9 @@
 #include "forces/linear_spring_kernel.h"
 #include "forces/rolling_kernel.h"
 
-SCREE_FN void scree_contact_law(const scree_force_law *law, const scree_contact_kinematics *k, scree_contact_force *f)
+/// All but what follows from the Coulomb limit. Returns the normal force.
+SCREE_FN scree_real scree_contact_law_without_limit(const scree_force_law *law, const scree_contact_kinematics *k,
+                                                    scree_contact_force *f)
 {
     if (law->model == SCREE_MODEL_LINEAR_SPRING) scree_linear_spring(law, k, f);
     else if (law->model == SCREE_MODEL_ENERGY_CONSERVING) scree_energy_conserving(law, k, f);
@@ -28,9 +30,23 @@ SCREE_FN void scree_contact_law(const scree_force_law *law, const scree_contact_
     const scree_real total = f->elastic_force + damping * approach;
     const scree_real normal_force = total < 0 && !law->has_attraction ? 0 : total;
     f->normal_force = scree_vec3_scale(k->normal, normal_force);
+    scree_friction_without_limit(law, k, f);
+    return normal_force;
+}
+
+/// mu F_n; nothing while the contact pulls.
+SCREE_FN scree_real scree_coulomb_limit(const scree_force_law *law, scree_real normal_force)
+{
+    return law->friction_coefficient * scree_max(normal_force, 0);
+}
+
+SCREE_FN void scree_contact_law(const scree_force_law *law, const scree_contact_kinematics *k, scree_contact_force *f)
+{
+    const scree_real normal_force = scree_contact_law_without_limit(law, k, f);
+    scree_friction_limit(scree_coulomb_limit(law, normal_force), f);
+    f->spring_energy = scree_spring_energy(f->spring_force, f->tangential_stiffness);
 
     const scree_real pressing = scree_max(normal_force, 0);
-    scree_friction(law, k, pressing, f);
     f->moment = scree_vec3_scale(k->lever, -normal_force);
     f->torsion = 0;
     f->rolling_moment = scree_vec3_zero();

@@ -14,9 +14,9 @@
 
 #include "forces/contact_kinematics.h"
 
-/// Fills the tangential fields of *f.
-SCREE_FN void scree_friction(const scree_force_law *law, const scree_contact_kinematics *k, scree_real normal_force,
-                             scree_contact_force *f)
+/// Spring and dashpot, not yet limited, to the tangential fields of *f.
+SCREE_FN void scree_friction_without_limit(const scree_force_law *law, const scree_contact_kinematics *k,
+                                           scree_contact_force *f)
 {
     const scree_vec3 v = k->relative_velocity;
     const scree_vec3 v_t = scree_vec3_add_scaled(v, k->normal, -scree_vec3_dot(v, k->normal));
@@ -29,15 +29,24 @@ SCREE_FN void scree_friction(const scree_force_law *law, const scree_contact_kin
         spring = scree_vec3_add_scaled(spring, v_t, -k_t * k->time_step);
     }
     const scree_real damping = 2 * law->tangential_damping_ratio * scree_sqrt(k->effective_mass * k_t);
-    const scree_vec3 force = scree_vec3_add_scaled(spring, v_t, -damping);
-
-    const scree_real limit = law->friction_coefficient * normal_force;
-    f->is_slipping = scree_vec3_dot(force, force) > limit * limit;
-    f->tangential_force = scree_cut_to_length(force, limit);
-    spring = scree_cut_to_length(spring, limit);
+    f->tangential_force = scree_vec3_add_scaled(spring, v_t, -damping);
     f->spring_force = spring;
-    const scree_real energy = scree_vec3_dot(spring, spring) / (2 * k_t);
-    f->spring_energy = k_t > 0 ? energy : 0;
+}
+
+SCREE_FN bool scree_is_longer(scree_vec3 v, scree_real limit) { return scree_vec3_dot(v, v) > limit * limit; }
+
+/// The Coulomb limit.
+SCREE_FN void scree_friction_limit(scree_real limit, scree_contact_force *f)
+{
+    f->is_slipping = scree_is_longer(f->tangential_force, limit);
+    f->tangential_force = scree_cut_to_length(f->tangential_force, limit);
+    f->spring_force = scree_cut_to_length(f->spring_force, limit);
+}
+
+SCREE_FN scree_real scree_spring_energy(scree_vec3 spring, scree_real stiffness)
+{
+    const scree_real energy = scree_vec3_dot(spring, spring) / (2 * stiffness);
+    return stiffness > 0 ? energy : 0;
 }
 
 #endif

@@ -1,6 +1,6 @@
 /// \file contact_force_cpu.c
-/// Forces of contacts on the CPU. Contacts that act in points and share a law without rolling resistance, the usual
-/// ones of spheres, are worked on in groups of lanes (lanes.h); all others one by one.
+/// Forces of contacts on the CPU. Contacts that act in points and whose laws are of one model and have no rolling
+/// resistance, the usual ones of spheres, are worked on in groups of lanes (lanes.h); all others one by one.
 #include "forces/forces.h"
 #include "forces/motion_lanes.h"
 
@@ -9,6 +9,9 @@ SCREE_DEFINE_LAUNCH_ON(scree_contact_force)
 /// What the law reads and gives of a group.
 typedef struct scree_force_group
 {
+    scree_lanes_vec3 stiffness; ///< effective_modulus, stiffness_factor and normal_stiffness of the laws
+    scree_lanes_vec3 losses;    ///< damping_ratio, tangential_damping_ratio and friction_coefficient
+    scree_real tangential_over_normal[SCREE_LANES], unused[SCREE_LANES];
     scree_motion_lanes i, j;
     scree_lanes_vec3 arm, normal, spring_force;
     scree_real volume[SCREE_LANES], indentation[SCREE_LANES], tangential_stiffness[SCREE_LANES];
@@ -45,8 +48,13 @@ static void load_history(scree_force_group *restrict g, const scree_contact_list
     }
 }
 
-static void load_group(scree_force_group *restrict g, const scree_contact_force_args *restrict a, int64_t first)
+static void load_group(scree_force_group *restrict g, const scree_contact_force_args *restrict a,
+                       const int32_t *restrict laws, int64_t first)
 {
+    // two times four numbers of each law
+    const int64_t size = sizeof *a->laws;
+    scree_lanes_gather(&g->stiffness, g->tangential_over_normal, &a->laws->effective_modulus, size, laws);
+    scree_lanes_gather(&g->losses, g->unused, &a->laws->damping_ratio, size, laws);
     const scree_contact_list *list = &a->contacts;
     scree_load_motions(&g->i, &g->j, &a->bodies, list->bodies + first);
     scree_lanes_load(&g->arm, list->arm + first);
@@ -79,17 +87,29 @@ static void limit_of_lanes(scree_force_group *restrict g)
     }
 }
 
-/// The lane loop, with a law whose choices are known here.
-static void law_of_lanes(scree_force_group *restrict g, const scree_force_law *law, int32_t model, scree_real time_step)
+/// The law of a lane; its choices are known here.
+static scree_force_law law_of_lane(const scree_force_group *g, int32_t model, int lane)
 {
-    scree_force_law known = *law;
-    known.model = model;
-    known.rolling = SCREE_ROLLING_NONE;
-    known.has_tangential_spring = true;
-    known.has_moments = false;
-    known.has_attraction = false;
+    scree_force_law law = {0};
+    law.effective_modulus = g->stiffness.x[lane];
+    law.stiffness_factor = g->stiffness.y[lane];
+    law.normal_stiffness = g->stiffness.z[lane];
+    law.tangential_over_normal = g->tangential_over_normal[lane];
+    law.damping_ratio = g->losses.x[lane];
+    law.tangential_damping_ratio = g->losses.y[lane];
+    law.friction_coefficient = g->losses.z[lane];
+    law.model = model;
+    law.rolling = SCREE_ROLLING_NONE;
+    law.has_tangential_spring = true;
+    return law;
+}
+
+/// The lane loop.
+static void law_of_lanes(scree_force_group *restrict g, int32_t model, scree_real time_step)
+{
     for (int l = 0; l < SCREE_LANES; ++l)
     {
+        const scree_force_law law = law_of_lane(g, model, l);
         scree_contact_kinematics k = {0};
         k.volume = g->volume[l];
         k.indentation = g->indentation[l];
@@ -100,14 +120,14 @@ static void law_of_lanes(scree_force_group *restrict g, const scree_force_law *l
         k.spring_force = scree_lanes_get(&g->spring_force, l);
         k.tangential_stiffness = g->tangential_stiffness[l];
         scree_contact_force f;
-        const scree_real normal_force = scree_contact_law_without_limit(&known, &k, &f);
+        const scree_real normal_force = scree_contact_law_without_limit(&law, &k, &f);
         scree_lanes_set(&g->normal_force, l, f.normal_force);
         scree_lanes_set(&g->tangential_force, l, f.tangential_force);
         scree_lanes_set(&g->spring_force, l, f.spring_force);
         g->elastic_force[l] = f.elastic_force;
         g->elastic_energy[l] = f.elastic_energy;
         g->tangential_stiffness[l] = f.tangential_stiffness;
-        g->limit[l] = scree_coulomb_limit(&known, normal_force);
+        g->limit[l] = scree_coulomb_limit(&law, normal_force);
     }
     limit_of_lanes(g);
     for (int l = 0; l < SCREE_LANES; ++l)
@@ -129,59 +149,79 @@ static void store_group(const scree_force_group *restrict g, const scree_contact
     for (int l = 0; l < SCREE_LANES; ++l) list->is_slipping[first + l] = g->slip[l] > 0;
 }
 
-SCREE_LANES_FUNCTION static void hertz_mindlin_of_group(const scree_contact_force_args *a, const scree_force_law *law,
+SCREE_LANES_FUNCTION static void hertz_mindlin_of_group(const scree_contact_force_args *a, const int32_t *laws,
                                                         int64_t first)
 {
     scree_force_group g;
-    load_group(&g, a, first);
-    law_of_lanes(&g, law, SCREE_MODEL_HERTZ_MINDLIN, a->time_step);
+    load_group(&g, a, laws, first);
+    law_of_lanes(&g, SCREE_MODEL_HERTZ_MINDLIN, a->time_step);
     store_group(&g, &a->contacts, first);
 }
 
-SCREE_LANES_FUNCTION static void linear_spring_of_group(const scree_contact_force_args *a, const scree_force_law *law,
+SCREE_LANES_FUNCTION static void linear_spring_of_group(const scree_contact_force_args *a, const int32_t *laws,
                                                         int64_t first)
 {
     scree_force_group g;
-    load_group(&g, a, first);
-    law_of_lanes(&g, law, SCREE_MODEL_LINEAR_SPRING, a->time_step);
+    load_group(&g, a, laws, first);
+    law_of_lanes(&g, SCREE_MODEL_LINEAR_SPRING, a->time_step);
     store_group(&g, &a->contacts, first);
 }
 
-static const scree_force_law *law_of(const scree_contact_force_args *a, int64_t c)
+static bool suits_lanes(const scree_force_law *law, int32_t model)
 {
-    const scree_candidate_pair pair = a->contacts.bodies[c];
-    return a->laws + (int64_t)a->bodies.moving[pair.i].material * a->num_materials + a->bodies.moving[pair.j].material;
+    return law->model == model && law->rolling == SCREE_ROLLING_NONE && law->has_tangential_spring &&
+           !law->has_attraction;
 }
 
-/// The law of all contacts of a group, if it is one that lanes know; otherwise NULL.
-static const scree_force_law *law_of_group(const scree_contact_force_args *a, int64_t first)
+/// The model of all laws, if it is one that lanes know and they suit; otherwise -1. Bodies whose materials have no law
+/// do not meet.
+static int32_t model_of_all(const scree_contact_force_args *a)
 {
-    const scree_force_law *law = law_of(a, first);
-    bool is_one = law->model != SCREE_MODEL_ENERGY_CONSERVING && law->rolling == SCREE_ROLLING_NONE &&
-                  law->has_tangential_spring && !law->has_attraction;
-    for (int l = 1; l < SCREE_LANES && a->num_materials > 1; ++l) is_one &= law_of(a, first + l) == law;
-    return is_one ? law : NULL;
-}
-
-static void force_of_group(const scree_contact_force_args *a, int64_t first, int64_t num)
-{
-    const scree_force_law *law = num == SCREE_LANES && a->contacts.acts_in_points ? law_of_group(a, first) : NULL;
-    if (law == NULL)
+    int32_t model = -1;
+    for (int32_t k = 0; k < a->num_materials * a->num_materials; ++k)
     {
-        for (int64_t c = first; c < first + num; ++c) scree_contact_force_at(*a, c);
-        return;
+        const scree_force_law *law = a->laws + k;
+        if (!(law->effective_modulus > 0)) continue;
+        if (model < 0) model = law->model;
+        if (!suits_lanes(law, model)) return -1;
     }
-    if (law->model == SCREE_MODEL_LINEAR_SPRING) linear_spring_of_group(a, law, first);
-    else hertz_mindlin_of_group(a, law, first);
+    return model != SCREE_MODEL_ENERGY_CONSERVING ? model : -1;
+}
+
+/// The same of the contacts of a group.
+static int32_t model_of_group(const scree_contact_force_args *a, const int32_t *laws)
+{
+    const int32_t model = a->laws[laws[0]].model;
+    bool is_known = model != SCREE_MODEL_ENERGY_CONSERVING;
+    for (int l = 0; l < SCREE_LANES; ++l) is_known &= suits_lanes(a->laws + laws[l], model);
+    return is_known ? model : -1;
+}
+
+/// Contacts first .. first + SCREE_LANES - 1, which act in points; `model` is that of all laws or -1.
+static void force_of_group(const scree_contact_force_args *a, int64_t first, int32_t model)
+{
+    int32_t laws[SCREE_LANES];
+    for (int l = 0; l < SCREE_LANES; ++l)
+    {
+        const scree_candidate_pair pair = a->contacts.bodies[first + l];
+        laws[l] = a->bodies.moving[pair.i].material * a->num_materials + a->bodies.moving[pair.j].material;
+    }
+    if (model < 0) model = model_of_group(a, laws);
+    if (model == SCREE_MODEL_HERTZ_MINDLIN) hertz_mindlin_of_group(a, laws, first);
+    else if (model == SCREE_MODEL_LINEAR_SPRING) linear_spring_of_group(a, laws, first);
+    else
+        for (int l = 0; l < SCREE_LANES; ++l) scree_contact_force_at(*a, first + l);
 }
 
 void scree_contact_force_launch(scree_contact_force_args args, int64_t num)
 {
-    const int64_t num_groups = (num + SCREE_LANES - 1) / SCREE_LANES;
-#pragma omp parallel for schedule(static) if (num >= SCREE_LAUNCH_MIN)
-    for (int64_t k = 0; k < num_groups; ++k)
+    const int64_t num_groups = args.contacts.acts_in_points ? num / SCREE_LANES : 0;
+    const int32_t model = model_of_all(&args);
+#pragma omp parallel if (num >= SCREE_LAUNCH_MIN)
     {
-        const int64_t first = k * SCREE_LANES, left = num - first;
-        force_of_group(&args, first, left < SCREE_LANES ? left : SCREE_LANES);
+#pragma omp for schedule(static) nowait
+        for (int64_t k = 0; k < num_groups; ++k) force_of_group(&args, k * SCREE_LANES, model);
+#pragma omp for schedule(static)
+        for (int64_t c = num_groups * SCREE_LANES; c < num; ++c) scree_contact_force_at(args, c);
     }
 }

@@ -4,6 +4,7 @@
 #ifndef SCREE_MESH_PAIRS_KERNEL_H
 #define SCREE_MESH_PAIRS_KERNEL_H
 
+#include "contact/mesh_gap_kernel.h"
 #include "contact/narrow_phase.h"
 #include "contact/pair_tally.h"
 #include "contact/separating_direction_kernel.h"
@@ -49,6 +50,7 @@ typedef struct scree_mesh_pairs_args
 } scree_mesh_pairs_args;
 
 typedef scree_mesh_pairs_args scree_mesh_apart_args;
+typedef scree_mesh_pairs_args scree_mesh_gap_args;
 typedef scree_mesh_pairs_args scree_mesh_write_args;
 
 /// Bound of the travels for a pair with a gap: a hair less, for the rounding of the travels and of this number.
@@ -122,6 +124,21 @@ SCREE_FN void scree_mesh_pair_note(const scree_mesh_pairs_args *a, int32_t m, co
     a->first_kept[m] = (int32_t)k;
     for (int32_t r = 0; r < num; ++r)
         if (results[r].status == SCREE_OVERLAP_TOUCHING) scree_keep_overlap(a, k++, results + r);
+}
+
+/// Entry m once its overlap is known: if nothing overlaps and no plane was found between the two, how long it can stay
+/// so.
+SCREE_FN void scree_mesh_gap_at(scree_mesh_gap_args a, int64_t m)
+{
+    if (a.memory[m].apart_until != 0) return;
+    const scree_candidate_pair pair = a.pairs[a.batch[m]];
+    const scree_shape_view *shape_i = a.bodies.shapes + a.bodies.shape[pair.i];
+    const scree_shape_view *shape_j = a.bodies.shapes + a.bodies.shape[pair.j];
+    const scree_pose *pose_i = a.bodies.pose + pair.i, *pose_j = a.bodies.pose + pair.j;
+    const bool is_larger = shape_i->num_triangles > shape_j->num_triangles;
+    const scree_real gap =
+        is_larger ? scree_mesh_gap(shape_i, pose_i, shape_j, pose_j) : scree_mesh_gap(shape_j, pose_j, shape_i, pose_i);
+    if (gap > 0) a.memory[m].apart_until = scree_apart_until(a.bodies.travel[pair.i] + a.bodies.travel[pair.j], gap);
 }
 
 /// Touching results of entry m to the list.

@@ -337,6 +337,15 @@ static bool make_room(const search *s, const scree_pair_tally *tally, scree_stat
     return true;
 }
 
+/// How long pairs of meshes stay apart that no plane was found for.
+static void find_gaps(const search *s)
+{
+    const scree_separation_use use = s->narrow_phase->separation;
+    if (use.finds && use.bounds)
+        scree_mesh_gap_launch_on(s->narrow_phase->device, mesh_args(s),
+                                 s->narrow_phase->buffers->batches[SCREE_PAIR_MESH_MESH].num);
+}
+
 /// Contacts of all pairs to the list, in the order of the pairs.
 static scree_status write_contacts(const search *s, int64_t num_contacts)
 {
@@ -374,6 +383,7 @@ scree_status scree_narrow_phase_find(scree_narrow_phase *narrow_phase, const scr
         tally = count_contacts(&s);
         is_complete = !make_room(&s, &tally, &status);
     }
+    if (status == SCREE_OK) find_gaps(&s);
     if (status == SCREE_OK) status = write_contacts(&s, tally.num_contacts);
     narrow_phase->counts.num_without_normal = tally.num_without_normal;
     narrow_phase->counts.num_fallbacks = tally.num_fallbacks;

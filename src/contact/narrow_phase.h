@@ -27,7 +27,8 @@ typedef struct scree_separation_use
 {
     bool finds;     ///< a plane between the two is looked for first
     bool remembers; ///< the search for it starts with that of the last time
-    bool bounds;    ///< a pair is skipped until it may have travelled through its gap
+    bool bounds;    ///< a pair is skipped until it may have travelled through its gap; where no plane was found, the
+                    ///< distance of the surfaces is computed
 } scree_separation_use;
 
 /// What one search met.

@@ -35,6 +35,8 @@ KERNELS = [
     ("scree_overlap_pairs", "contact", "src/contact/overlap_pairs_kernel.h",
      dict(own="active:int32 pairs:pair", near="pose:pose shape:int32", far="pose:pose shape:int32"),
      13925),
+    # only looks: at rest no gap is used up
+    ("scree_mesh_gap", "pair", "src/contact/mesh_pairs_kernel.h", dict(own="memory:memory"), 6),
     ("scan of contacts", "pair", None, dict(own="first_of_pair:int64*3"), 10),
     ("scree_mesh_write", "contact", "src/contact/mesh_pairs_kernel.h",
      dict(own="kept:real*18 first_kept:int32*2 pairs:pair bodies:pair patch:int32 volume:real indentation:real radius:real "
@@ -75,7 +77,7 @@ NOT_IN_POINTS = {"radius", "moment", "torsion", "is_turning"}
 
 # which kernels a stage of scree bench is made of; a search comes every some steps and is not in the model
 STAGES = {"predict": ("scree_predict",), "travel": ("scree_travel",),
-          "contacts": ("scree_mesh_apart", "scree_overlap_pairs", "scan of contacts", "scree_mesh_write", "scree_place_spheres",
+          "contacts": ("scree_mesh_apart", "scree_overlap_pairs", "scree_mesh_gap", "scan of contacts", "scree_mesh_write", "scree_place_spheres",
                        "scree_sphere_sphere_count", "scree_sphere_sphere_write"),
           "history": ("scree_history_match",), "forces": ("scree_contact_force",), "gather": ("scree_gather",),
           "correct": ("scree_correct",), "work": ("scree_work",)}

@@ -575,7 +575,8 @@ static const scree_scene_key solver_keys[] = {
      .meaning = "whether that plane is tried first in the next step, and pairs that touched are not asked"},
     {.name = "bound_separation",
      .default_text = "true",
-     .meaning = "whether a pair is left alone until its bodies may have travelled through the gap between them"},
+     .meaning = "whether a pair is left alone until its bodies may have travelled through the gap between them: along "
+                "the plane, or, where no plane separates them, the distance of their surfaces"},
 };
 static const scree_scene_section solver_section = {"solver", "How contacts are found.", solver_fields, solver_keys,
                                                    COUNT(solver_keys)};

@@ -20,6 +20,7 @@ LIMITS = {"80": (64, 32), "90": (64, 32), "120": (48, 24)}
 
 # kernels that may have a frame or spills, and why
 REASONS = {
+    "scree_mesh_gap": "two triangles and the relative pose are more than 168 registers; a pair comes here only when its last gap is used up",
     "scree_particle_pairs": "32 keys wait in a batch, so that one atomic serves them all; runs at neighbour searches only",
     "scree_wall_pairs": "as scree_particle_pairs",
     "scree_sphere_mesh_count": "for 12.0 the compiler stops at 128 registers: some values of the walk over the mesh's tree wait",

@@ -24,6 +24,7 @@ SCREE_DECLARE_LAUNCH_CUDA(scree_wall_load)
 SCREE_DECLARE_LAUNCH_CUDA(scree_pair_flag)
 SCREE_DECLARE_LAUNCH_CUDA(scree_pair_scatter)
 SCREE_DECLARE_LAUNCH_CUDA(scree_mesh_apart)
+SCREE_DECLARE_LAUNCH_CUDA(scree_mesh_gap)
 SCREE_DECLARE_LAUNCH_CUDA(scree_mesh_write)
 SCREE_DECLARE_LAUNCH_CUDA(scree_work_reduce)
 SCREE_DECLARE_LAUNCH_CUDA(scree_ended)
@@ -147,6 +148,8 @@ static void find_overlaps_on(side &where)
         first.push_back(first.back() + num_contacts);
     const int64_t n = first.back();
     SCREE_CHECK(n > 20);
+    LAUNCH_ON(where, scree_mesh_gap, args, num);
+    where.keep(args.memory, num);
     args.list = empty_list(where, first, n);
     LAUNCH_ON(where, scree_mesh_write, args, num);
     keep_geometry(where, args.list, n);

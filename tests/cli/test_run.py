@@ -3,6 +3,7 @@
 SCREE_PROGRAM names the program. Frames are read with VTK, the rest with h5py: not with scree's own code.
 """
 import json
+import math
 import os
 import pty
 import random
@@ -239,6 +240,48 @@ def test_vtk_reads_walls_and_contacts(whole):
             assert x[ids[2]] == pytest.approx(position[j], abs=1e-7)
     shown = vtk_to_numpy(data.GetCellData().GetArray("normal_force"))
     assert np.abs(shown) == pytest.approx(np.linalg.norm(force, axis=1), rel=1e-5)
+
+
+SLABS = """
+name: slabs on an incline
+gravity: [{down}, 0, {into}]
+time: {{end: 0.8, step: 1e-4}}
+materials: [{{name: stone, density: 2500, youngs_modulus: 1e7, poisson_ratio: 0.25}}]
+contact_laws: [{{materials: [stone, stone], friction_coefficient: {friction}, restitution_coefficient: 0.3}}]
+shapes:
+  - {{name: slab, source: box, size: [0.1, 0.1, 0.02]}}
+  - {{name: plate, source: box, size: [4, 1, 0.2]}}
+particles: [{{name: slabs, shape: slab, material: stone, bodies: {bodies}}}]
+walls: [{{name: plate, shape: plate, material: stone}}]
+output: {{series: 0.1, frames: 0.1, checkpoint: 0}}
+"""
+
+
+@pytest.mark.parametrize("friction, num_slabs", [(0.4, 1), (0.7, 2)])
+def test_the_forces_of_contacts_are_those_of_statics(tmp_path, friction, num_slabs):
+    """A slab slides down an incline of 30 degrees, at the Coulomb limit; two, one on the other, stick to a rougher one."""
+    mass, angle, g = 0.5, math.radians(30), 9.81
+    bodies = [{"position": [0, 0, 0.11 + 0.02 * k]} for k in range(num_slabs)]
+    (tmp_path / "slabs.yaml").write_text(SLABS.format(
+        down=g * math.sin(angle), into=-g * math.cos(angle), friction=friction, bodies=json.dumps(bodies)))
+    run(tmp_path / "slabs.yaml", "-o", tmp_path / "run")
+    data = Frames(tmp_path / "run" / "contacts.vtkhdf").at(8)
+    i, j, normal, tangential, slipping = (
+        vtk_to_numpy(data.GetCellData().GetArray(name))
+        for name in ("i", "j", "normal_force", "tangential_force", "slipping"))
+    (foot,) = np.flatnonzero(j == num_slabs)
+    slides = friction < math.tan(angle)
+    assert i[foot] == 0 and len(i) == num_slabs and list(slipping) == [slides] * num_slabs
+    # what is shown is a float, of 6e-8; the slabs have come to rest on the plate as far as it tells
+    weight = num_slabs * mass * g
+    assert normal[foot] == pytest.approx(weight * math.cos(angle), rel=1e-6)
+    assert tangential[foot] == pytest.approx(weight * (friction * math.cos(angle) if slides else math.sin(angle)), rel=1e-6)
+    if num_slabs == 2:
+        # the upper slab leans by some 1e-4, and its normal with it; the whole force is its weight all the same
+        upper = 1 - foot
+        assert {i[upper], j[upper]} == {0, 1}
+        assert math.hypot(normal[upper], tangential[upper]) == pytest.approx(mass * g, rel=1e-6)
+        assert tangential[upper] == pytest.approx(mass * g * math.sin(angle), rel=2e-3)
 
 
 def test_the_scene_as_used_gives_the_same_run(whole, tmp_path):

@@ -20,7 +20,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tools"))
-from ensemble import Ensemble  # noqa: E402
+from ensemble import Ensemble, Refused  # noqa: E402
 
 BUILD = Path(os.environ.get("SCREE_BUILD_DIR", ROOT / "build" / "release")).resolve()
 """With SCREE_BUILD_DIR in the environment the programs are taken as they are there; nothing is built."""
@@ -130,7 +130,12 @@ class Study:
         if arguments != ["--keep"]:
             self.begin()
             signal.signal(signal.SIGTERM, self.stop)
-            results = {"commit": engine_commit()} | makers[tuple(arguments)]()
+            try:
+                results = {"commit": engine_commit()} | makers[tuple(arguments)]()
+            except Refused as refused:
+                raise SystemExit(f"{refused}; for a study: delete {self.runs}") from None
+            except KeyboardInterrupt:
+                raise SystemExit("stopped; the same command goes on") from None
             self.results.write_text(readable(results))
         results = json.loads(self.results.read_text())
         self.write_page({"commit": results["commit"]} | make_page(results))

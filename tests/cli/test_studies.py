@@ -128,3 +128,11 @@ def test_a_text_that_is_not_made_is_refused(tree):
     (tree / "validation/good/page.md").write_text(PAGE + "{{missing}}\n")
     done = studies(tree, "good", QUICK="1")
     assert done.returncode == 1 and "{{missing}}" in done.stderr
+
+
+def test_runs_of_another_scene_are_not_mixed_in(tree):
+    assert studies(tree, "good", QUICK="1").returncode == 0
+    script = tree / "validation/good/run.py"
+    script.write_text(script.read_text().replace('"count": 200', '"count": 100'))
+    done = studies(tree, "good", QUICK="1")
+    assert done.returncode == 1 and "another scene" in done.stderr and str(tree / "runs/quick/good/runs") in done.stderr

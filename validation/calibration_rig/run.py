@@ -30,7 +30,8 @@ if QUICK:
 BAND = (33, 42)  # of the experiments of the source [degrees]
 COLUMNS = (("angle", "angle of repose [degrees]", 1), ("flow", "flow energy [mJ]", 1e3))
 FLOW = 0.6  # time after the opening of the doors over which the flow energy is taken [s]
-LONG = PROPORTIONS["end"] + 0.5  # end of the two runs that are shown over time [s]
+LONG = PROPORTIONS["end"] + 0.5  # end of the runs that are shown over time [s]
+CREEP = 0.35  # time before it over which their creep is measured [s]
 
 
 def cases():
@@ -129,7 +130,7 @@ def collect():
 
 
 def of_case(results, name, column):
-    return np.array([row[column] for row in results["rows"] if row["case"] == name], dtype=float)
+    return np.array([row[column] for row in rows_of(results, name)], dtype=float)
 
 
 def scatter(ax, results, named, column, unit, colour="C0"):
@@ -163,12 +164,10 @@ def plot_pair(results, name, named, label, log):
 def plot_spring(results):
     figure, axes = plt.subplots(1, 3, figsize=(13, 3.8), layout="constrained")
     for name, colour, text in (("spring", "C0", "with tangential spring"), ("no_spring", "C3", "without")):
-        row = next((row for row in results["rows"] if row["case"] == name), None)
-        if row is None:
-            continue
-        axes[0].semilogy(row["time"], np.maximum(row["moving"], 1e-12), colour, lw=1, label=text)
-        axes[1].plot(row["time"], 1e3 * np.array(row["heights"]), colour, lw=1)
-        axes[2].plot(row["angle_times"], row["angles"], f"{colour}.-", lw=1)
+        for k, row in enumerate(rows_of(results, name)):
+            axes[0].semilogy(row["time"], np.maximum(row["moving"], 1e-12), colour, lw=0.8, label=text if k == 0 else None)
+            axes[1].plot(row["time"], 1e3 * np.array(row["heights"]), colour, lw=1)
+            axes[2].plot(row["angle_times"], row["angles"], f"{colour}.-", lw=1, ms=4)
     after = PROPORTIONS["end"] - 0.3
     axes[0].set(ylabel="kinetic energy [J]")
     axes[1].set(ylabel="mean height of the rocks [mm]", xlim=(after, None), ylim=(0, 30))
@@ -180,11 +179,41 @@ def plot_spring(results):
     STUDY.save(figure, "spring.png")
 
 
+def rows_of(results, name):
+    return [row for row in results["rows"] if row["case"] == name]
+
+
+def creep_table(results):
+    """How the piles change during the last CREEP seconds of the long runs."""
+    lines = []
+    for name, text in (("spring", "with tangential spring"), ("no_spring", "without")):
+        for row in rows_of(results, name):
+            time, heights = np.array(row["time"]), np.array(row["heights"])
+            late = time >= LONG - CREEP
+            rate = np.polyfit(time[late], 1e3 * heights[late], 1)[0]
+            angles = [angle for time, angle in zip(row["angle_times"], row["angles"], strict=True) if time >= LONG - CREEP - 1e-9]
+            lines.append([text, row["seed"], f"{-rate:.2g}", f"{angles[0]:.2f}", f"{angles[-1]:.2f}", f"{row['rest']:.0e}"])
+    return table(["", "seed", "mean height sinks by [mm/s]", f"angle {CREEP:g} s before the end", "at the end",
+                  "kinetic energy at the end [J]"], lines)
+
+
 def shown(values, digits):
     text = f"{values.mean():.{digits}f}"
     if len(values) > 1:
         text += f" ± {values.std(ddof=1) / math.sqrt(len(values)):.{digits}f} ({values.std(ddof=1):.{digits}f})"
     return text
+
+
+def differences_table(results):
+    """From the finest rocks, seed by seed: the same rock, sizes, places and orientations."""
+    finest = {row["seed"]: row for row in rows_of(results, f"triangles_{TRIANGLES[-1]}")}
+    lines = []
+    for n in TRIANGLES[:-1]:
+        pairs = [(row, finest[row["seed"]]) for row in rows_of(results, f"triangles_{n}") if row["seed"] in finest]
+        angle = np.array([row["angle"] - fine["angle"] for row, fine in pairs])
+        height, flow = (np.array([100 * (row[key] / fine[key] - 1) for row, fine in pairs]) for key in ("height", "flow"))
+        lines.append([n, len(pairs), *(shown(values, 1) for values in (angle, height, flow))])
+    return table(["triangles", "seeds", "angle [degrees]", "mean height [%]", "flow energy [%]"], lines)
 
 
 def numbers(results):
@@ -207,14 +236,21 @@ def time_of(seconds):
     return f"{known.mean():.0f}" if len(known) else ""
 
 
+def mean_seconds(results, name, timed):
+    """Of a case; of all runs where none of it is known."""
+    known = [row["seconds"] for row in rows_of(results, name) if row["seconds"] is not None] or timed
+    return np.mean(known) if known else math.nan
+
+
 def make_page(results):
     plot_pair(results, "resolution.png", [(n, f"triangles_{n}") for n in TRIANGLES], "triangles of a rock", True)
     named = sorted([(mu, f"friction_{mu:g}") for mu in FRICTION] + [(0.39, "triangles_40")])
     plot_pair(results, "friction.png", named, "friction between rocks", False)
     plot_spring(results)
     timed = [row["seconds"] for row in results["rows"] if row["seconds"] is not None]
-    seconds = np.mean(timed) * results["planned"] if timed else math.nan
-    texts = {"table": numbers(results), "minutes": f"{seconds / 60:.0f}", "half": f"{seconds / 120:.0f}",
+    seconds = sum(seeds * mean_seconds(results, name, timed) for name, (_, seeds) in cases().items())
+    texts = {"table": numbers(results), "creep": creep_table(results), "differences": differences_table(results),
+             "minutes": f"{seconds / 60:.0f}", "half": f"{seconds / 120:.0f}",
              "runs": str(len(results["rows"])), "planned": str(results["planned"]), "timed": str(len(timed)),
              "mass": f"{1e3 * results['rows'][0]['mass']:.0f}",
              "measured": f"{min(row['measured_step'] for row in results['rows']):.1e}"}

@@ -16,7 +16,7 @@ from study import QUICK, Study, plt, table, write_scene  # noqa: E402
 from run_folder import Run  # noqa: E402
 
 STUDY = Study(__file__)
-ORIENTATIONS = 100 if QUICK else 400
+ORIENTATIONS = 25 if QUICK else 100
 RADIUS, MODULUS = 0.01, 1e8 / (2 * (1 - 0.25**2))
 DEPTHS = [0.002, 0.005, 0.01, 0.02, 0.03]
 CLUMPS = [8, 16, 32, 64, 128, 256]

@@ -165,4 +165,7 @@ class Study:
             page = page.replace("{{" + name + "}}", text)
         if "{{" in page:
             raise SystemExit(f"page.md has a text that run.py does not make: {page[page.index('{{'):][:40]}")
+        if QUICK:
+            title, _, rest = page.partition("\n")
+            page = f"{title}\n\n*Made with QUICK=1, by fewer or smaller runs. Sentences are those of the whole study.*\n{rest}"
         (self.output / "README.md").write_text(page)

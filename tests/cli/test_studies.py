@@ -44,7 +44,7 @@ def compute():
 
 STUDY.main(compute, lambda results: {"hashes": " ".join(results["hashes"]), "steps": str(STEPS)})
 """
-PAGE = "{{steps}} steps: {{hashes}}, engine {{commit}}\n"
+PAGE = "# A fall\n{{steps}} steps: {{hashes}}, engine {{commit}}\n"
 
 
 @pytest.fixture
@@ -77,7 +77,7 @@ def test_all_are_run_and_the_one_that_fails_is_named(tree):
     assert done.returncode == 1 and "failed: bad" in done.stderr, done.stderr
     hashes = json.loads((tree / "validation/good/results.json").read_text())["hashes"]
     assert len(set(hashes)) == 3
-    assert (tree / "validation/good/README.md").read_text() == f"2500 steps: {' '.join(hashes)}, engine unknown\n"
+    assert (tree / "validation/good/README.md").read_text() == f"# A fall\n2500 steps: {' '.join(hashes)}, engine unknown\n"
     assert not (tree / "runs/quick").exists()
 
 
@@ -86,7 +86,7 @@ def test_a_quick_study_writes_into_its_own_folder_alone(tree):
     done = studies(tree, "good", QUICK="1")
     assert done.returncode == 0, done.stderr
     quick = tree / "runs/quick/good/README.md"
-    assert quick.read_text().startswith("400 steps: ") and str(quick) in done.stdout
+    assert "QUICK=1" in quick.read_text() and "\n400 steps: " in quick.read_text() and str(quick) in done.stdout
     after = {path: path.read_bytes() for path in tree.rglob("*") if path.is_file() and tree / "runs/quick" not in path.parents}
     assert after == before
 

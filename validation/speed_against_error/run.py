@@ -24,6 +24,8 @@ STUDY = Study(__file__)
 EARLY = 0.25  # time at which positions in the packing are compared [s]
 BASE = ("time step", "0.5")
 FINEST = {"collisions": 64, "packing": 16, "flow": 4}  # finest step: 1/this of the critical one
+if QUICK:
+    RIG["count"] = 15
 SEEDS = dict.fromkeys(FINEST, 1) if QUICK else {"collisions": 3, "packing": 3, "flow": 2}
 
 

@@ -40,6 +40,8 @@ def cases():
     all_cases |= {name: (changes | {"end": LONG}, SPRING_SEEDS) for name, changes in (("no_spring", {"spring": 0}), ("spring", {}))}
     all_cases |= {f"friction_{mu:g}": ({"friction": mu}, FEW_SEEDS) for mu in FRICTION}
     all_cases["smooth_sides"] = ({"side_friction": 0}, FEW_SEEDS)
+    all_cases["narrow"] = ({"depth": 0.6 * PROPORTIONS["depth"]}, FEW_SEEDS)
+    all_cases["more_rocks"] = ({"count": round(1.6 * PROPORTIONS["count"])}, FEW_SEEDS)
     return all_cases
 
 
@@ -59,7 +61,9 @@ def compute():
 def scene(name, seed):
     """The seed is that of the rock as well as of sizes, places and orientations."""
     changes, _ = cases()[name]
-    made = rig(rock_scale(PROGRAM, changes.get("triangles", 40), seed), PROPORTIONS, seed=seed, **changes)
+    proportions = PROPORTIONS | {key: value for key, value in changes.items() if key in ("depth", "count")}
+    changes = {key: value for key, value in changes.items() if key not in ("depth", "count")}
+    made = rig(rock_scale(PROGRAM, changes.get("triangles", 40), seed), proportions, seed=seed, **changes)
     made["particles"][0]["seed"] = seed
     return made
 

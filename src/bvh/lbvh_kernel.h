@@ -57,6 +57,22 @@ SCREE_FN scree_real scree_box_distance_squared(scree_box box, scree_vec3 p)
     return x * x + y * y + z * z;
 }
 
+/// The lowest node above all leaves with boxes no farther than `radius` from `centre`; SCREE_LBVH_END if there are
+/// none.
+SCREE_FN int32_t scree_lbvh_node_around(scree_lbvh_view tree, scree_vec3 centre, scree_real radius)
+{
+    int32_t k = tree.root;
+    while (k != SCREE_LBVH_END && tree.nodes[k].first_child >= 0)
+    {
+        const int32_t left = tree.nodes[k].first_child, right = tree.nodes[left].escape;
+        const bool is_left = scree_box_distance_squared(tree.nodes[left].box, centre) <= radius * radius;
+        const bool is_right = scree_box_distance_squared(tree.nodes[right].box, centre) <= radius * radius;
+        if (is_left && is_right) return k;
+        k = is_left ? left : is_right ? right : SCREE_LBVH_END;
+    }
+    return k;
+}
+
 /// True if a leaf's box is no farther than `radius` from `centre`.
 SCREE_FN bool scree_lbvh_meets_sphere(scree_lbvh_view tree, scree_vec3 centre, scree_real radius)
 {

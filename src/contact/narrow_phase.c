@@ -40,6 +40,8 @@ struct scree_narrow_phase_buffers
     int64_t max_bodies;
 
     // a sphere and a mesh
+    int32_t *start; ///< (max_starts) per pair
+    int64_t max_starts;
     scree_sphere_contact *found; ///< (num in batch, max_found)
     int64_t max_sphere_mesh_pairs;
     int32_t max_found; ///< per pair
@@ -63,6 +65,7 @@ void scree_narrow_phase_destroy(scree_narrow_phase *narrow_phase)
         scree_device_free(device, b->memory);
         scree_device_free(device, b->spheres);
         scree_device_free(device, b->found);
+        scree_device_free(device, b->start);
         free(b);
     }
     *narrow_phase = (scree_narrow_phase){.device = device};
@@ -210,6 +213,10 @@ static scree_status sort_pairs(const search *s)
     }
     if (status != SCREE_OK) return status;
     if (b->memory != NULL) scree_device_zero(device, b->memory, (size_t)b->max_mesh_pairs * sizeof *b->memory);
+    const int64_t num_on_meshes = b->batches[SCREE_PAIR_SPHERE_MESH].num;
+    status = scree_device_reserve(device, &b->start, &b->max_starts, num_on_meshes, sizeof *b->start);
+    if (status != SCREE_OK) return status;
+    scree_device_zero(device, b->start, (size_t)num_on_meshes * sizeof *b->start);
     b->num_sorted = s->num_pairs;
     return SCREE_OK;
 }
@@ -245,6 +252,8 @@ static scree_sphere_pairs_args sphere_args(const search *s, scree_pair_kind kind
     args.pairs = s->pairs;
     args.batch = b->batches[kind].pairs;
     args.list = scree_contact_list_view(s->list);
+    args.start = b->start;
+    args.reach = s->narrow_phase->separation.bounds ? s->bodies.reach : 0;
     args.found = b->found;
     args.max_found = b->max_found;
     args.tally = b->tally;

@@ -150,9 +150,10 @@ SCREE_FN scree_sphere_on_mesh scree_sphere_to_mesh(scree_vec3 centre, scree_real
     return sphere;
 }
 
-/// Contacts of a sphere with a posed mesh. Returns their number; if that exceeds max_contacts, what is written is
+/// Contacts of a sphere with a posed mesh, of which what lies below node `start` of its tree can be met; usually the
+/// root. Returns their number; if that exceeds max_contacts, what is written is
 /// useless: call again with more room. *is_inside: the centre is inside the mesh's solid.
-SCREE_FN int32_t scree_sphere_mesh_contacts(const scree_shape_view *mesh, scree_sphere_on_mesh sphere,
+SCREE_FN int32_t scree_sphere_mesh_contacts(const scree_shape_view *mesh, scree_sphere_on_mesh sphere, int32_t start,
                                             scree_sphere_contact *contacts, int32_t max_contacts, bool *is_inside)
 {
     const scree_real squared_radius = sphere.radius * sphere.radius;
@@ -163,8 +164,9 @@ SCREE_FN int32_t scree_sphere_mesh_contacts(const scree_shape_view *mesh, scree_
     deepest.normal = scree_vec3_zero();
     deepest.height = 0;
     deepest.rank = 0;
-    int32_t k = mesh->tree.root;
-    while (k != SCREE_LBVH_END)
+    int32_t k = start;
+    const int32_t end = start != SCREE_LBVH_END ? mesh->tree.nodes[start].escape : SCREE_LBVH_END;
+    while (k != end)
     {
         const scree_lbvh_node *node = mesh->tree.nodes + k;
         const bool is_met = scree_box_distance_squared(node->box, sphere.centre) < squared_radius;

@@ -39,6 +39,8 @@ typedef struct scree_sphere_pairs_args
     scree_contact_list list;           ///< first pass: number of contacts to first_of_pair; second: geometry written
 
     // spheres and clumps on meshes
+    int32_t *start;              ///< (num) of a single sphere: see scree_start_on_mesh(); 0 after a search of pairs
+    scree_real reach;            ///< [m] two bodies come closer by no more than this until the next one; 0: not known
     scree_sphere_contact *found; ///< (num, max_found)
     int32_t max_found;
     scree_pair_tally *tally; ///< centres inside the solid are counted, and the largest number found on one mesh noted
@@ -133,6 +135,22 @@ SCREE_FN scree_sphere scree_turned_sphere(const scree_shape_view *shape, const s
     return sphere;
 }
 
+/// Where to start in the tree of a mesh: above all that a sphere can meet until the next search of pairs. Found once
+/// after it and kept, two more than the node.
+SCREE_FN int32_t scree_start_on_mesh(int32_t *start, const scree_shape_view *mesh, scree_sphere_on_mesh sphere,
+                                     scree_real reach)
+{
+    if (*start == 0)
+    {
+        const scree_vec3 c = sphere.centre;
+        const scree_real radius = sphere.radius + reach / sphere.scale;
+        // the roundings of both ways to the mesh's frame, at both times
+        const scree_real margin = 64 * SCREE_REAL_EPSILON * (radius + scree_abs(c.x) + scree_abs(c.y) + scree_abs(c.z));
+        *start = scree_lbvh_node_around(mesh->tree, c, radius + margin) + 2;
+    }
+    return *start - 2;
+}
+
 SCREE_FN void scree_sphere_mesh_count_at(scree_sphere_mesh_count_args a, int64_t b)
 {
     const scree_candidate_pair pair = a.pairs[a.batch[b]];
@@ -148,10 +166,12 @@ SCREE_FN void scree_sphere_mesh_count_at(scree_sphere_mesh_count_args a, int64_t
         const int32_t first = *num < a.max_found ? (int32_t)*num : a.max_found;
         scree_sphere_contact *found = a.found + b * a.max_found + first;
         bool is_inside;
-        const int32_t added = scree_sphere_mesh_contacts(
-            a.shapes + a.shape[mesh],
-            scree_sphere_to_mesh(scree_vec3_add(a.pose[body].position, sphere.centre), sphere.radius, a.pose + mesh),
-            found, a.max_found - first, &is_inside);
+        const scree_shape_view *shape = a.shapes + a.shape[mesh];
+        const scree_sphere_on_mesh on_mesh =
+            scree_sphere_to_mesh(scree_vec3_add(a.pose[body].position, sphere.centre), sphere.radius, a.pose + mesh);
+        const bool is_single = a.reach > 0 && a.shapes[a.shape[body]].num_spheres == 1;
+        const int32_t start = is_single ? scree_start_on_mesh(a.start + b, shape, on_mesh, a.reach) : shape->tree.root;
+        const int32_t added = scree_sphere_mesh_contacts(shape, on_mesh, start, found, a.max_found - first, &is_inside);
         for (int32_t f = 0; f < added && first + f < a.max_found; ++f) found[f].sphere = k;
         *num += added;
         is_any_inside |= is_inside;

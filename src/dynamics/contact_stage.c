@@ -4,6 +4,7 @@
 #include "dynamics/step_buffers.h"
 
 #include <math.h>
+#include <string.h>
 
 static int64_t count_blocks(int64_t num, int64_t size) { return (num + size - 1) / size; }
 
@@ -47,11 +48,14 @@ scree_status scree_update_contacts(scree_simulation *simulation)
     const scree_contact_list old = simulation->old_contacts;
 
     scree_bodies bodies;
+    memset(&bodies, 0, sizeof bodies); // the gaps between its members too
     bodies.shapes = simulation->shape_views;
     bodies.shape = b->shape;
     bodies.pose = b->pose;
     bodies.travel = b->travel;
     bodies.num_bodies = simulation->particles.num_particles + simulation->num_walls;
+    // each particle stays within its skin
+    bodies.reach = simulation->scene->solver.reuse_pairs ? 2 * b->skin : 0;
     scree_status status = scree_narrow_phase_find(&simulation->narrow_phase, &bodies, broad_phase->pairs,
                                                   broad_phase->num_pairs, &simulation->contacts);
     scree_stage_end(&simulation->clock, SCREE_STAGE_CONTACTS);

@@ -177,6 +177,8 @@ static void find_spheres_on(side &where, scree_pair_kind kind)
     args.pairs = where.copy(s->broad_phase.pairs, num_pairs);
     args.batch = where.copy(batch.data(), num);
     args.list.first_of_pair = where.zeros<int64_t>(num_pairs + 1);
+    args.start = where.zeros<int32_t>(num);
+    args.reach = 2 * b->skin;
     args.max_found = 8;
     args.found = where.make<scree_sphere_contact>(num * args.max_found);
     args.tally = where.zeros<scree_pair_tally>(1);
@@ -185,6 +187,7 @@ static void find_spheres_on(side &where, scree_pair_kind kind)
     else LAUNCH_ON(where, scree_sphere_mesh_count, args, num);
     where.keep(args.list.first_of_pair, num_pairs);
     where.keep(args.tally, 1);
+    where.keep(args.start, num);
 
     std::vector<int64_t> first(1, 0);
     for (const int64_t num_contacts : where.read(args.list.first_of_pair, num_pairs))

@@ -1,5 +1,5 @@
 // Contacts of true spheres: with each other, and with faces, edges, vertices, seams, grooves and corners of meshes.
-#include "contact/sphere_contact_kernel.h"
+#include "contact/sphere_pairs_kernel.h"
 #include "harness.h"
 #include "mesh_tools.h"
 #include "polyhedra/generate.h"
@@ -15,7 +15,7 @@ static int32_t touch(const scree_shape *shape, double x, double y, double z, dou
 {
     const scree_vec3 centre = scree_vec3_make((scree_real)x, (scree_real)y, (scree_real)z);
     return scree_sphere_mesh_contacts(&shape->view, scree_sphere_to_mesh(centre, (scree_real)radius, &at_origin),
-                                      contacts, 8, is_inside);
+                                      shape->view.tree.root, contacts, 8, is_inside);
 }
 
 static void make_shape(scree_shape *shape, scree_mesh *mesh)
@@ -245,12 +245,64 @@ static void test_posed_mesh(void)
         const scree_vec3 centre = scree_vec3_add_scaled(pose.position, n, (scree_real)(0.25 + 0.09));
         scree_sphere_contact c[3];
         bool is_inside;
-        SCREE_CHECK_INT(scree_sphere_mesh_contacts(&box.view, scree_sphere_to_mesh(centre, (scree_real)0.1, &pose), c,
-                                                   3, &is_inside),
+        SCREE_CHECK_INT(scree_sphere_mesh_contacts(&box.view, scree_sphere_to_mesh(centre, (scree_real)0.1, &pose),
+                                                   box.view.tree.root, c, 3, &is_inside),
                         1);
         check_contact(c[0], (double)n.x, (double)n.y, (double)n.z, 0.01);
     }
     scree_shape_destroy(&box);
+}
+
+static scree_vec3 random_direction(uint64_t *state)
+{
+    scree_vec3 v = scree_vec3_zero();
+    while (!(scree_vec3_length(v) > (scree_real)0.1 && scree_vec3_length(v) < 1))
+    {
+        v.x = (scree_real)(2 * scree_test_random(state) - 1);
+        v.y = (scree_real)(2 * scree_test_random(state) - 1);
+        v.z = (scree_real)(2 * scree_test_random(state) - 1);
+    }
+    return scree_vec3_scale(v, 1 / scree_vec3_length(v));
+}
+
+/// A sphere that starts below the node found at one place has the contacts of one that starts at the root, wherever it
+/// has gone within its reach and the mesh within its.
+static void test_start_in_tree(void)
+{
+    scree_mesh mesh;
+    SCREE_CHECK_INT(scree_generate_sphere(&mesh, 0.5, 320), SCREE_OK);
+    scree_shape shape;
+    make_shape(&shape, &mesh);
+    uint64_t state = 5;
+    int num_below = 0, num_without = 0, num_touching = 0;
+    for (int k = 0; k < 2000; ++k)
+    {
+        // spheres about a sphere of radius 1/2 that is three times as large, some of them too far away
+        const scree_real radius = (scree_real)(0.05 + 0.3 * scree_test_random(&state)), reach = (scree_real)0.1;
+        scree_pose pose = {{2, 0, 1}, {1, 0, 0, 0}, 3};
+        const scree_vec3 direction = random_direction(&state), way = random_direction(&state);
+        const double distance = 1.5 + (0.15 + 1.4 * (double)radius) * scree_test_random(&state);
+        scree_vec3 centre = scree_vec3_add_scaled(pose.position, direction, (scree_real)distance);
+        int32_t start = 0;
+        scree_start_on_mesh(&start, &shape.view, scree_sphere_to_mesh(centre, radius, &pose), reach);
+        num_below += start - 2 != shape.view.tree.root && start - 2 != SCREE_LBVH_END;
+        num_without += start - 2 == SCREE_LBVH_END;
+
+        centre = scree_vec3_add_scaled(centre, way, reach / 2);
+        pose.position = scree_vec3_add_scaled(pose.position, way, -reach / 2);
+        const scree_sphere_on_mesh sphere = scree_sphere_to_mesh(centre, radius, &pose);
+        scree_sphere_contact from_root[8] = {{{0, 0, 0}, 0, 0, 0, 0}}, from_start[8] = {{{0, 0, 0}, 0, 0, 0, 0}};
+        bool is_inside[2];
+        const int32_t num =
+            scree_sphere_mesh_contacts(&shape.view, sphere, shape.view.tree.root, from_root, 8, is_inside);
+        const int32_t kept = scree_start_on_mesh(&start, &shape.view, sphere, reach);
+        SCREE_CHECK_INT(scree_sphere_mesh_contacts(&shape.view, sphere, kept, from_start, 8, is_inside + 1), num);
+        SCREE_CHECK(memcmp(from_root, from_start, sizeof from_root) == 0 && is_inside[0] == is_inside[1]);
+        num_touching += num > 0;
+    }
+    SCREE_CHECK(num_below > 500 && num_without > 20 && num_touching > 500);
+    printf("%d below the root, %d nowhere, %d touching\n", num_below, num_without, num_touching);
+    scree_shape_destroy(&shape);
 }
 
 int main(void)
@@ -262,5 +314,6 @@ int main(void)
     SCREE_RUN(test_distance_and_side);
     SCREE_RUN(test_grooves_are_crossed_smoothly);
     SCREE_RUN(test_posed_mesh);
+    SCREE_RUN(test_start_in_tree);
     return SCREE_TEST_END();
 }

@@ -145,6 +145,9 @@ SCREE_FN scree_sphere_on_mesh scree_sphere_to_mesh(scree_vec3 centre, scree_real
     sphere.rotation = scree_mat3_from_quat(mesh->orientation);
     sphere.scale = mesh->scale;
     const scree_vec3 t = scree_mat3_apply_transposed(sphere.rotation, scree_vec3_sub(centre, mesh->position));
+    sphere.centre = t;
+    sphere.radius = radius;
+    if (mesh->scale == 1) return sphere; // walls
     sphere.centre = scree_vec3_make(t.x / mesh->scale, t.y / mesh->scale, t.z / mesh->scale);
     sphere.radius = radius / mesh->scale;
     return sphere;

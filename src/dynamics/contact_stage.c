@@ -54,8 +54,8 @@ scree_status scree_update_contacts(scree_simulation *simulation)
     bodies.pose = b->pose;
     bodies.travel = b->travel;
     bodies.num_bodies = simulation->particles.num_particles + simulation->num_walls;
-    // each particle stays within its skin
-    bodies.reach = simulation->scene->solver.reuse_pairs ? 2 * b->skin : 0;
+    // each particle stays within its skin, together with the walls
+    bodies.reach = simulation->scene->solver.reuse_pairs ? (b->has_travel ? 2 : 1) * b->skin : 0;
     scree_status status = scree_narrow_phase_find(&simulation->narrow_phase, &bodies, broad_phase->pairs,
                                                   broad_phase->num_pairs, &simulation->contacts);
     scree_stage_end(&simulation->clock, SCREE_STAGE_CONTACTS);

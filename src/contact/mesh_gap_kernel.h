@@ -13,7 +13,7 @@
 
 /// Farther than this share of the smaller body's bounding radius is not looked: what is apart by more makes no
 /// candidate pair, or not for long.
-#define SCREE_GAP_REACH ((scree_real)0.125)
+#define SCREE_GAP_REACH ((scree_real)0.0625)
 
 typedef struct scree_gap_triangle
 {

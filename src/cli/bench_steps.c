@@ -131,8 +131,8 @@ static json_t *describe_memory(const scree_simulation *s)
     const struct mallinfo2 info = mallinfo2();
     struct rusage usage;
     getrusage(RUSAGE_SELF, &usage);
-    return json_pack("{s:I, s:I, s:I, s:I, s:I}", "per_particle", (json_int_t)bytes.particle, "per_pair",
-                     (json_int_t)bytes.pair, "per_contact", (json_int_t)bytes.contact, "allocated",
+    return json_pack("{s:I, s:I, s:I, s:I, s:I}", "per_particle", (json_int_t)(bytes.state + bytes.search), "per_pair",
+                     (json_int_t)scree_plan_largest_pair(&bytes), "per_contact", (json_int_t)bytes.contact, "allocated",
                      (json_int_t)(info.uordblks + info.hblkhd), "peak_resident", (json_int_t)usage.ru_maxrss * 1024);
 }
 

@@ -1,7 +1,7 @@
 #include "dynamics/on_device.h"
 
 #include "contact/overlap_pairs_kernel.h"
-#include "contact/sphere_pairs_kernel.h"
+#include "dynamics/plan.h"
 #include "dynamics/step_buffers.h"
 #include "polyhedra/shape_copy.h"
 
@@ -24,31 +24,12 @@ enum
 
 scree_device_memory scree_device_memory_of(const scree_simulation *simulation)
 {
-    const scree_particles *p = &simulation->particles;
-    bool has_meshes = false, has_spheres = false;
-    for (int64_t i = 0; i < p->num_particles; ++i)
-    {
-        const scree_shape_kind kind = simulation->shape_views[p->shape[i]].kind;
-        has_spheres |= kind == SCREE_KIND_SPHERE;
-        has_meshes |= kind == SCREE_KIND_MESH;
-    }
-    const size_t state =
-        5 * sizeof(scree_vec3) + sizeof(scree_quat) + 2 * sizeof(scree_real) + sizeof(scree_vec3) + 3 * sizeof(int32_t);
-    const size_t body = 3 * sizeof(scree_pose) + sizeof(scree_moving_body) + 2 * sizeof(scree_real) + sizeof(int32_t) +
-                        (has_spheres ? sizeof(scree_sphere) : 0);
-    const size_t search = sizeof(scree_box) + sizeof(scree_vec3) + sizeof(scree_real) + 2 * sizeof(scree_lbvh_node) +
-                          4 * sizeof(int32_t) + 2 * (sizeof(uint64_t) + sizeof(int32_t)) + 2 * sizeof(int32_t) +
-                          sizeof(int64_t);
-    const size_t pair = sizeof(scree_candidate_pair) + 2 * sizeof(int32_t) + 2 * sizeof(uint64_t) + sizeof(int32_t) +
-                        2 * sizeof(int64_t);
-    const size_t mesh_pair = sizeof(scree_pair_memory) + 2 * sizeof(int32_t);
-    const size_t contact = (size_t)scree_contact_list_bytes(&simulation->contacts) + sizeof(int64_t) + 1 +
-                           (has_meshes ? sizeof(scree_kept_overlap) : 0);
+    const scree_plan_bytes bytes = scree_simulation_plan_bytes(simulation);
     scree_device_memory memory;
-    memory.per_particle = (int64_t)(state + body + search);
-    memory.per_pair = (int64_t)(SLACK * (double)(pair + (has_meshes ? mesh_pair : 0)));
-    memory.per_contact = (int64_t)(SLACK * (double)contact);
-    const int64_t num = p->num_particles, num_pairs = simulation->counters.num_pairs,
+    memory.per_particle = (int64_t)(bytes.state + bytes.search);
+    memory.per_pair = (int64_t)(SLACK * (double)scree_plan_largest_pair(&bytes));
+    memory.per_contact = (int64_t)(SLACK * (double)bytes.contact);
+    const int64_t num = simulation->particles.num_particles, num_pairs = simulation->counters.num_pairs,
                   num_contacts = simulation->counters.num_contacts;
     memory.num_pairs = num_pairs > BED_PAIRS * num ? num_pairs : BED_PAIRS * num;
     memory.num_contacts = num_contacts > BED_CONTACTS * num ? num_contacts : BED_CONTACTS * num;

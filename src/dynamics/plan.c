@@ -2,40 +2,35 @@
 /// The stages that a scene needs, why, and what they cost in memory.
 #include "dynamics/plan.h"
 
+#include "contact/mesh_pairs_kernel.h"
 #include "contact/sphere_contact_kernel.h"
 #include "dynamics/on_device.h"
 #include "dynamics/step_buffers.h"
 
 #include <stdio.h>
 
-/// Bytes of one particle in each group of arrays.
-static const size_t bytes_moving = 4 * sizeof(scree_vec3) + sizeof(scree_quat) + sizeof(scree_vec3);
-static const size_t bytes_constant = 2 * sizeof(scree_real) + sizeof(scree_vec3) + 3 * sizeof(int32_t);
-static const size_t bytes_search =
-    2 * sizeof(scree_pose) + sizeof(scree_box) + sizeof(scree_vec3) + sizeof(scree_real) + 2 * sizeof(scree_lbvh_node);
-static const size_t bytes_contact =
-    2 * (sizeof(scree_candidate_pair) + sizeof(int32_t) + 10 * sizeof(scree_real) + 9 * sizeof(scree_vec3) + 2) +
-    sizeof(int64_t) + 1;
-static const size_t bytes_pair = sizeof(scree_candidate_pair) + 4 * sizeof(int32_t) + 2 * sizeof(int64_t);
-static const size_t bytes_mesh_pair =
-    sizeof(scree_overlap_result) + sizeof(int32_t) + sizeof(scree_vec3) + 2 * sizeof(scree_real);
-static const size_t bytes_sphere_mesh_pair = 3 * sizeof(scree_sphere_contact) + 1;
-
 scree_plan_bytes scree_simulation_plan_bytes(const scree_simulation *simulation)
 {
     const scree_simulation *s = simulation;
-    scree_plan_bytes bytes = {bytes_moving + bytes_constant + bytes_search, bytes_pair, bytes_contact};
-    bool has_spheres = false, has_meshes = false;
-    for (int64_t i = 0; i < s->particles.num_particles; ++i)
-    {
-        const bool is_sphere = s->shape_views[s->particles.shape[i]].kind == SCREE_KIND_SPHERE;
-        has_spheres |= is_sphere;
-        has_meshes |= !is_sphere;
-    }
-    size_t largest = has_meshes ? bytes_mesh_pair : 0;
-    if (has_spheres && (has_meshes || s->num_walls > 0) && bytes_sphere_mesh_pair > largest)
-        largest = bytes_sphere_mesh_pair;
-    bytes.pair += largest;
+    bool has[SCREE_NUM_SHAPE_KINDS] = {false};
+    for (int64_t i = 0; i < s->particles.num_particles; ++i) has[s->shape_views[s->particles.shape[i]].kind] = true;
+    const bool has_meshes = has[SCREE_KIND_MESH], has_spheres = has[SCREE_KIND_SPHERE];
+    scree_plan_bytes bytes = {0};
+    bytes.state = 6 * sizeof(scree_vec3) + sizeof(scree_quat) + 2 * sizeof(scree_real) + 3 * sizeof(int32_t);
+    const size_t body = 3 * sizeof(scree_pose) + sizeof(scree_moving_body) + 2 * sizeof(scree_real) + sizeof(int32_t) +
+                        (has_spheres ? sizeof(scree_sphere) : 0);
+    const size_t tree = 2 * sizeof(scree_lbvh_node) + 4 * sizeof(int32_t) + 2 * (sizeof(uint64_t) + sizeof(int32_t));
+    const size_t rows = 2 * sizeof(int32_t) + sizeof(int64_t);
+    bytes.search = body + sizeof(scree_box) + sizeof(scree_vec3) + sizeof(scree_real) + tree + rows;
+    // ids, rows, keys to sort, batch, first contact now and in the step before
+    bytes.pair = sizeof(scree_candidate_pair) + 2 * sizeof(int32_t) + 2 * sizeof(uint64_t) + sizeof(int32_t) +
+                 2 * sizeof(int64_t);
+    if (has_meshes) bytes.mesh_pair = sizeof(scree_pair_memory) + 2 * sizeof(int32_t);
+    if ((has_spheres || has[SCREE_KIND_CLUMP]) && (has_meshes || s->num_walls > 0))
+        bytes.sphere_mesh_pair = 3 * sizeof(scree_sphere_contact);
+    bytes.contact = (size_t)scree_contact_list_bytes(&s->contacts) + sizeof(int64_t) + 1;
+    if (has_meshes)
+        bytes.contact += sizeof(scree_kept_overlap) + (s->contacts.has_no_levers ? 0 : sizeof(scree_kept_lever));
     return bytes;
 }
 
@@ -46,8 +41,8 @@ static void print_stage(FILE *out, const char *stage, const char *why, size_t by
     fputc('\n', out);
 }
 
-/// How contacts are found, by the kinds of shapes that can meet. Returns the bytes of a pair that takes the most.
-static size_t print_narrow_phase(const scree_simulation *s, FILE *out)
+/// How contacts are found, by the kinds of shapes that can meet.
+static void print_narrow_phase(const scree_simulation *s, const scree_plan_bytes *bytes, FILE *out)
 {
     bool has[SCREE_NUM_SHAPE_KINDS] = {false};
     for (int64_t i = 0; i < s->particles.num_particles; ++i) has[s->shape_views[s->particles.shape[i]].kind] = true;
@@ -55,29 +50,24 @@ static size_t print_narrow_phase(const scree_simulation *s, FILE *out)
     const bool has_spheres = has[SCREE_KIND_SPHERE] || has_clumps;
     const char *stage = "narrow phase";
     char text[96];
-    size_t largest = 0;
     if (has_meshes)
     {
         snprintf(text, sizeof text, "polyhedra: exact overlap, %s scheme, a contact per %s",
                  s->scene->solver.overlap_scheme, s->scene->solver.separate_patches ? "patch" : "pair");
-        print_stage(out, stage, text, bytes_mesh_pair, "pair");
+        print_stage(out, stage, text, bytes->mesh_pair, "pair");
         stage = "";
-        largest = bytes_mesh_pair;
     }
     if (has_spheres && (has_meshes || s->num_walls > 0))
     {
         snprintf(text, sizeof text, "spheres%s on meshes: faces, edges and vertices that are nearest",
                  has_clumps ? " and those of clumps" : "");
-        print_stage(out, stage, text, bytes_sphere_mesh_pair, "pair");
+        print_stage(out, stage, text, bytes->sphere_mesh_pair, "pair");
         stage = "";
-        largest = largest > bytes_sphere_mesh_pair ? largest : bytes_sphere_mesh_pair;
     }
     if (has[SCREE_KIND_SPHERE]) print_stage(out, stage, "spheres with each other: closed form", 0, "");
     if (has_clumps)
         print_stage(out, has[SCREE_KIND_SPHERE] ? "" : stage, "clumps: closed form of their spheres", 0, "");
-    print_stage(out, "contacts", "sorted by pair, with those of the step before for the history", bytes_contact,
-                "contact");
-    return largest;
+    print_stage(out, "contacts", "sorted by pair, and the history of the step before", bytes->contact, "contact");
 }
 
 /// What the laws of the scene bring along.
@@ -119,6 +109,7 @@ void scree_simulation_print_plan(const scree_simulation *simulation, void *strea
 {
     FILE *out = stream;
     const scree_simulation *s = simulation;
+    const scree_plan_bytes bytes = scree_simulation_plan_bytes(s);
     bool is_moving = false;
     for (int32_t w = 0; w < s->num_walls; ++w) is_moving |= s->scene->walls[w].motion.kind != SCREE_MOTION_FIXED;
     char text[96];
@@ -126,14 +117,13 @@ void scree_simulation_print_plan(const scree_simulation *simulation, void *strea
     fprintf(out, "plan of \"%s\": %lld particles, %d walls, %lld steps of %.4g s\n", s->scene->name,
             (long long)s->particles.num_particles, s->num_walls, (long long)scree_simulation_num_steps(s),
             s->time_step);
-    print_stage(out, "predict", "velocity Verlet, implicit midpoint rotation", bytes_moving + bytes_constant,
-                "particle");
+    print_stage(out, "predict", "velocity Verlet, implicit midpoint rotation", bytes.state, "particle");
     if (is_moving) print_stage(out, "walls", "some walls move as prescribed", 0, "");
     snprintf(text, sizeof text, "LBVH over boxes with a skin of %.3g m; reused until it is used up",
              (double)s->buffers->skin);
-    print_stage(out, "neighbours", text, bytes_search, "particle");
-    print_stage(out, "", "candidate pairs and their rows", bytes_pair, "pair");
-    const size_t largest_pair = print_narrow_phase(s, out);
+    print_stage(out, "neighbours", text, bytes.search, "particle");
+    print_stage(out, "", "candidate pairs and their rows", bytes.pair, "pair");
+    print_narrow_phase(s, &bytes, out);
     describe_forces(s, text, sizeof text);
     print_stage(out, "forces", text, 0, "");
     print_stage(out, "gather", "per particle over its row of contacts, in fixed order", 0, "");
@@ -141,9 +131,8 @@ void scree_simulation_print_plan(const scree_simulation *simulation, void *strea
     print_stage(out, "work", "energy balance and critical time step", 0, "");
     if (is_moving) print_stage(out, "loads", "torque, force and work of the moving walls", 0, "");
     print_averages(s, out);
-    const double particles =
-        (double)s->particles.num_particles * (double)(bytes_moving + bytes_constant + bytes_search);
-    const double pairs = (double)s->broad_phase.num_pairs * (double)(bytes_pair + largest_pair + bytes_contact);
+    const double particles = (double)s->particles.num_particles * (double)(bytes.state + bytes.search);
+    const double pairs = (double)s->broad_phase.num_pairs * (double)(scree_plan_largest_pair(&bytes) + bytes.contact);
     fprintf(out, "  memory now about %.3g MB for %lld candidate pairs, all of them as contacts\n",
             (particles + pairs) / 1e6, (long long)s->broad_phase.num_pairs);
 }

@@ -5,13 +5,22 @@
 
 #include "dynamics/state.h"
 
-/// Bytes of one item in all arrays.
+/// Bytes of one item in all arrays that a scene needs, without what they have grown ahead.
 typedef struct scree_plan_bytes
 {
-    size_t particle;
-    size_t pair; ///< candidate pair of the kind that takes the most, without the contact that it may become
-    size_t contact;
+    size_t state;            ///< of a particle
+    size_t search;           ///< of a particle: poses, motion, boxes, tree
+    size_t pair;             ///< of any candidate pair
+    size_t mesh_pair;        ///< more for one of two meshes; 0 if there are none
+    size_t sphere_mesh_pair; ///< more for a sphere or clump and a mesh; 0 if there are none
+    size_t contact;          ///< with the history of the step before
 } scree_plan_bytes;
+
+/// Of a pair of the kind that takes the most.
+static inline size_t scree_plan_largest_pair(const scree_plan_bytes *bytes)
+{
+    return bytes->pair + (bytes->mesh_pair > bytes->sphere_mesh_pair ? bytes->mesh_pair : bytes->sphere_mesh_pair);
+}
 
 scree_plan_bytes scree_simulation_plan_bytes(const scree_simulation *simulation);
 

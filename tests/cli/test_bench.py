@@ -53,6 +53,20 @@ def test_packing():
         assert 0.3 * wanted < case["mean_depth"] <= 1.2 * wanted
 
 
+@pytest.mark.parametrize("shape", ["cube", "sphere"])
+def test_memory_is_that_of_the_plan(shape):
+    # of two beds, so that what the program takes by itself does not count; arrays grow ahead by up to a quarter
+    small, large = (result_of("packing", "--shape", shape, "--particles", str(num), "--steps", "1", "--repetitions", "1")["cases"][0]
+                    for num in (20000, 100000))
+
+    def planned(case):
+        return (case["particles"] * case["bytes"]["per_particle"] + case["pairs"] * case["bytes"]["per_pair"]
+                + case["contacts"] * case["bytes"]["per_contact"])
+
+    taken = large["bytes"]["peak_resident"] - small["bytes"]["peak_resident"]
+    assert 0.85 < taken / (planned(large) - planned(small)) < 1.35
+
+
 def test_savings_change_the_work_and_not_the_contacts():
     cases = result_of("packing", "--shape", "schoenhardt", "--savings", *BED)["cases"]
     assert len(cases) == 7

@@ -94,7 +94,8 @@ class Study:
         name = self.folder.name
         self.output = ROOT / "runs" / "quick" / name if QUICK else self.folder
         self.runs = self.output / "runs" if QUICK else ROOT / "runs" / name
-        self.results, self.ensembles = self.output / "results.json", []
+        self.results = self.output / "results.json"
+        self.ensembles, self.kept_files = [], []
 
     def ensemble(self, scene, name, varied=(), settings=(), program=PROGRAM):
         """The runs of a scene in a folder of this study, one thread each; see tools/ensemble.py."""
@@ -107,6 +108,16 @@ class Study:
         ensemble = self.ensemble(scene, name, settings=settings, program=program)
         self.expect(ensemble.run(jobs=1))
         return ensemble.members[0]
+
+    def kept(self, name, make):
+        """make(), or what it gave before the study was broken off: for what is no run of a scene."""
+        path = self.runs / f"{name}.json"
+        self.kept_files.append(path)
+        if not path.exists():
+            part = path.with_suffix(".part")
+            part.write_text(json.dumps(make()))
+            part.rename(path)
+        return json.loads(path.read_text())
 
     @staticmethod
     def expect(failed):
@@ -137,6 +148,8 @@ class Study:
             except KeyboardInterrupt:
                 raise SystemExit("stopped; the same command goes on") from None
             self.results.write_text(readable(results))
+            for path in self.kept_files:
+                path.unlink()
         results = json.loads(self.results.read_text())
         self.write_page({"commit": results["commit"]} | make_page(results))
 

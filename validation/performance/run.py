@@ -2,7 +2,7 @@
 
 Usage: python run.py [--keep]
   --keep   plots and page again from results.json, without computing anything
-QUICK=1 in the environment takes smaller beds and shorter runs.
+QUICK=1 in the environment takes smaller beds and shorter runs. A study that was broken off goes on where it stopped.
 """
 
 import json
@@ -43,23 +43,25 @@ def compute():
     build("scree_program", "scree_single_program")
     bed = ["--particles", 1000 if QUICK else 2000, "--repetitions", 3 if QUICK else 4]
     single = dict(program=SINGLE_PROGRAM)
-    results = {"quick": QUICK, "packing": bench("packing", *bed), "fall": scene()}
+    kept = STUDY.kept
+    results = {"quick": QUICK, "packing": kept("packing", lambda: bench("packing", *bed)), "fall": kept("fall", scene)}
     results["machine"] = results["packing"]["machine"]
-    results["savings"] = bench("packing", "--shape", "schoenhardt", "--savings", *bed)
-    results["sphere_savings"] = bench("spheres", "--savings", *bed)
+    results["savings"] = kept("savings", lambda: bench("packing", "--shape", "schoenhardt", "--savings", *bed))
+    results["sphere_savings"] = kept("sphere_savings", lambda: bench("spheres", "--savings", *bed))
     # the two precisions in turn
-    pairs = [(bench("packing", "--shape", shape, *bed), bench("packing", "--shape", shape, *bed, **single))
-             for shape in ("cube", "schoenhardt", "sphere")]
+    pairs = kept("precision", lambda: [(bench("packing", "--shape", shape, *bed), bench("packing", "--shape", shape, *bed, **single))
+                                       for shape in ("cube", "schoenhardt", "sphere")])
     results["precision"] = [[double["cases"][0], float_["cases"][0]] for double, float_ in pairs]
-    results["skin"] = {skin: scene(f"solver.skin={skin}", parts=1)["cases"][0] for skin in SKINS}
-    results["rig"] = bench("rig", "--steps", 2500 if QUICK else 14000, "--particles", 50)
+    results["skin"] = kept("skin", lambda: {skin: scene(f"solver.skin={skin}", parts=1)["cases"][0] for skin in SKINS})
+    results["rig"] = kept("rig", lambda: bench("rig", "--steps", 2500 if QUICK else 14000, "--particles", 50))
     largest = 10000 if QUICK else 100000
-    results["scaling"] = bench("scaling", "--particles", largest, "--repetitions", 3, "--steps", 5,
-                               "--search-every", 5, "--threads", 2)
+    results["scaling"] = kept("scaling", lambda: bench("scaling", "--particles", largest, "--repetitions", 3, "--steps", 5,
+                                                       "--search-every", 5, "--threads", 2))
     # one process for each, for the peak is that of the process
     sizes = [3000, 10000] if QUICK else [10000, 100000, 1000000]
-    results["memory"] = [bench("packing", "--shape", "schoenhardt", "--particles", n, "--steps", 2, "--repetitions", 1,
-                               "--search-every", 2)["cases"][0] for n in sizes]
+    results["memory"] = kept("memory", lambda: [
+        bench("packing", "--shape", "schoenhardt", "--particles", n, "--steps", 2, "--repetitions", 1, "--search-every", 2)["cases"][0]
+        for n in sizes])
     return results
 
 

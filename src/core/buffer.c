@@ -22,8 +22,9 @@ void *scree_buffer_alloc(int64_t num_items, size_t item_size)
     // a step goes over dozens of arrays at once: with small pages their addresses are more than a processor remembers
     if (num_bytes >= MIN_LARGE_BYTES)
     {
-        // a wish; it may be refused. What does not fill a large page lies in small ones
-        void *memory = aligned_alloc(LARGE_PAGE, (num_bytes / ALIGNMENT + 1) * ALIGNMENT);
+        // a wish; it may be refused. What does not fill a large page lies in small ones, of which the rest stays
+        // untouched
+        void *memory = aligned_alloc(LARGE_PAGE, (num_bytes / LARGE_PAGE + 1) * LARGE_PAGE);
         if (memory != NULL) (void)madvise(memory, num_bytes / LARGE_PAGE * LARGE_PAGE, MADV_HUGEPAGE);
         return memory;
     }

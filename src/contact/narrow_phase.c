@@ -294,7 +294,9 @@ static void find_overlaps(const search *s)
     overlaps.num_lanes = s->narrow_phase->num_lanes > 0 ? s->narrow_phase->num_lanes : 1;
     overlaps.num_at_once = device == NULL ? 8 : 1;
     const int64_t most = (num + overlaps.num_at_once - 1) / overlaps.num_at_once;
-    scree_overlap_pairs_launch_on(device, overlaps, most < b->pool.num_slices ? most : b->pool.num_slices);
+    const int64_t num_takers = most < b->pool.num_slices ? most : b->pool.num_slices;
+    if (overlaps.options.separate_patches) scree_overlap_patches_launch_on(device, overlaps, num_takers);
+    else scree_overlap_pairs_launch_on(device, overlaps, num_takers);
 }
 
 /// How many contacts each pair has, added up in the list. Returns the counts of the search; what was found of a pair

@@ -7,11 +7,12 @@
 #include "contact/pair_kinds_kernel.h"
 #include "core/launch_cpu.h"
 
-SCREE_DECLARE_LAUNCH(scree_pair_flag)     ///< over candidate pairs
-SCREE_DECLARE_LAUNCH(scree_pair_scatter)  ///< over candidate pairs
-SCREE_DECLARE_LAUNCH(scree_mesh_apart)    ///< over pairs of meshes
-SCREE_DECLARE_LAUNCH(scree_overlap_pairs) ///< over slices
-SCREE_DECLARE_LAUNCH(scree_mesh_gap)      ///< over pairs of meshes
-SCREE_DECLARE_LAUNCH(scree_mesh_write)    ///< over pairs of meshes
+SCREE_DECLARE_LAUNCH(scree_pair_flag)       ///< over candidate pairs
+SCREE_DECLARE_LAUNCH(scree_pair_scatter)    ///< over candidate pairs
+SCREE_DECLARE_LAUNCH(scree_mesh_apart)      ///< over pairs of meshes
+SCREE_DECLARE_LAUNCH(scree_overlap_pairs)   ///< over slices
+SCREE_DECLARE_LAUNCH(scree_overlap_patches) ///< over slices
+SCREE_DECLARE_LAUNCH(scree_mesh_gap)        ///< over pairs of meshes
+SCREE_DECLARE_LAUNCH(scree_mesh_write)      ///< over pairs of meshes
 
 #endif

@@ -142,9 +142,11 @@ SCREE_FN bool scree_convex_add_crossing(scree_overlap_slice *slice, const scree_
     scree_overlap_body *body = slice->body + edge->is_of_b;
     scree_overlap_crossing *crossing = slice->crossings + c;
     const int32_t nearer = scree_abs(cut->height[0]) <= scree_abs(cut->height[1]) ? 0 : 1;
-    const scree_vec3 along = scree_vec3_sub(edge->line.p[1 - nearer], edge->line.p[nearer]);
-    const scree_real part = cut->height[nearer] / (cut->height[nearer] - cut->height[1 - nearer]);
-    crossing->point = scree_vec3_add_scaled(edge->line.p[nearer], along, part);
+    const scree_vec3 start = SCREE_PICK2(edge->line.p, nearer);
+    const scree_vec3 along = scree_vec3_sub(SCREE_PICK2(edge->line.p, 1 - nearer), start);
+    const scree_real height = SCREE_PICK2(cut->height, nearer);
+    const scree_real part = height / (height - SCREE_PICK2(cut->height, 1 - nearer));
+    crossing->point = scree_vec3_add_scaled(start, along, part);
     crossing->triangle = edge->triangle;
     crossing->side = edge->side;
     crossing->through = through;

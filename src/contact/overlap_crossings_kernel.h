@@ -74,9 +74,10 @@ SCREE_FN int32_t scree_overlap_find_crossing(const scree_overlap_slice *slice, c
 }
 
 /// Ties each segment to the crossings at its ends. Every crossing ends two segments, one in each triangle of its edge.
-SCREE_FN_APART void scree_overlap_tie_segments(const scree_team *team, scree_overlap_slice *slice,
+SCREE_FN_APART void scree_overlap_tie_segments(scree_team lanes, scree_overlap_slice *slice,
                                                const scree_shape_view *const *shape)
 {
+    const scree_team *team = &lanes;
     int32_t num_tied = 0;
     bool is_tied = true;
     for (int32_t s = scree_team_lane(team); s < slice->num_segments; s += scree_team_size(team))
@@ -95,10 +96,31 @@ SCREE_FN_APART void scree_overlap_tie_segments(const scree_team *team, scree_ove
     scree_team_sync(team);
 }
 
+/// A side that passes through a face, or not.
+typedef struct scree_side_crossing
+{
+    scree_vec3 point;
+    int32_t sign; ///< +1 where the side, running up its vertex ids, enters the other body, -1 where it leaves, 0 if not
+} scree_side_crossing;
+
+/// Side k of face `own`, of body `is_of_b`, and face `other` by the hierarchy.
+SCREE_FN_APART scree_side_crossing scree_overlap_decide_by_levels(const scree_face *own, int32_t k,
+                                                                  const scree_face *other, int32_t is_of_b,
+                                                                  scree_levels *levels)
+{
+    const scree_line *edge = &levels->edge;
+    levels->edge = scree_face_side(own, k);
+    scree_side_crossing crossing;
+    crossing.point = scree_vec3_zero();
+    crossing.sign = is_of_b ? -scree_edge_b_crosses(levels, other, edge, &crossing.point)
+                            : scree_edge_a_crosses(levels, edge, other, &crossing.point);
+    return crossing;
+}
+
 /// Does side k of face `own`, of body `is_of_b`, pass through face `other`? +1 where the side, running up its vertex
 /// ids, enters the other body, -1 where it leaves.
 SCREE_FN int32_t scree_overlap_decide(const scree_face *own, int32_t k, const scree_face *other, int32_t is_of_b,
-                                      scree_real tolerance, scree_vec3 *point)
+                                      scree_real tolerance, scree_levels *levels, scree_vec3 *point)
 {
     const scree_line edge = scree_face_side(own, k);
     const scree_box box = scree_box_of_points(other->p[0], other->p[1], other->p[2]);
@@ -110,36 +132,41 @@ SCREE_FN int32_t scree_overlap_decide(const scree_face *own, int32_t k, const sc
         const scree_sign_verdict verdict = scree_edge_sign(&edge, size, other, tolerance, point);
         if (verdict != SCREE_SIGN_UNSURE) return (int32_t)verdict;
     }
-    return is_of_b ? -scree_edge_b_crosses(other, &edge, point) : scree_edge_a_crosses(&edge, other, point);
+    const scree_side_crossing crossing = scree_overlap_decide_by_levels(own, k, other, is_of_b, levels);
+    *point = crossing.point;
+    return crossing.sign;
 }
 
 /// Two triangles decided side by side: the ends that are found pair up into segments. False if there are too many.
 SCREE_FN_APART bool scree_overlap_meet_by_sides(scree_overlap_slice *slice, int32_t triangle_a, int32_t triangle_b)
 {
-    const scree_face *face[2];
-    face[0] = &slice->body[0].triangles[triangle_a].face;
-    face[1] = &slice->body[1].triangles[triangle_b].face;
+    const scree_face *face_a = &slice->body[0].triangles[triangle_a].face;
+    const scree_face *face_b = &slice->body[1].triangles[triangle_b].face;
     scree_segment_end(*ends)[6] = slice->ends;
-    int32_t num[2] = {0, 0};
+    int32_t num_first = 0, num_last = 0;
     for (int32_t is_of_b = 0; is_of_b < 2; ++is_of_b)
     {
+        const scree_face *own = is_of_b ? face_b : face_a;
+        const scree_face *other = is_of_b ? face_a : face_b;
         for (int32_t k = 0; k < 3; ++k)
         {
             scree_vec3 point;
             const int32_t sign =
-                scree_overlap_decide(face[is_of_b], k, face[1 - is_of_b], is_of_b, slice->sign_tolerance, &point);
+                scree_overlap_decide(own, k, other, is_of_b, slice->sign_tolerance, &slice->levels, &point);
             if (sign == 0) continue;
-            const bool is_entering = sign * scree_face_sense(face[is_of_b], k) > 0;
-            const int32_t kind = is_entering == (is_of_b != 0) ? 0 : 1;
-            scree_segment_end *end = ends[kind] + num[kind]++;
+            const bool is_entering = sign * scree_face_sense(own, k) > 0;
+            const bool is_first = is_entering == (is_of_b != 0);
+            scree_segment_end *end = is_first ? ends[0] + num_first : ends[1] + num_last;
+            num_first += is_first;
+            num_last += !is_first;
             end->is_of_b = is_of_b;
             end->side = k;
             end->point = point;
             end->has_point = true;
         }
     }
-    const int32_t num_pairs = num[0] < num[1] ? num[0] : num[1];
-    if (num[0] != num[1]) slice->is_closed = false;
+    const int32_t num_pairs = num_first < num_last ? num_first : num_last;
+    if (num_first != num_last) slice->is_closed = false;
     for (int32_t i = 0; i < num_pairs; ++i)
         if (!scree_overlap_add_segment(slice, triangle_a, triangle_b, ends[0] + i, ends[1] + i)) return false;
     return true;
@@ -188,8 +215,9 @@ SCREE_FN bool scree_overlap_meet_listed(const scree_team *team, scree_overlap_sl
 
 /// All segments, by a team of several lanes: pairs whose boxes overlap are listed in their order, where the links will
 /// be, and judged whenever the list is full. False if there are too many.
-SCREE_FN_APART bool scree_overlap_find_segments_together(const scree_team *team, scree_overlap_slice *slice)
+SCREE_FN_APART bool scree_overlap_find_segments_together(scree_team lanes, scree_overlap_slice *slice)
 {
+    const scree_team *team = &lanes;
     const scree_overlap_body *a = slice->body;
     const scree_overlap_body *b = slice->body + 1;
     scree_overlap_link *pairs = slice->body[0].links;
@@ -261,7 +289,8 @@ SCREE_FN int32_t scree_overlap_count_inside(scree_overlap_slice *slice, int32_t 
         const scree_face *g = &scree_overlap_finish(other, t)->face;
         int32_t own = SCREE_SIGN_UNSURE;
         if (slice->sign_tolerance > 0) own = scree_vertex_sign(p, g, side == 0, slice->sign_tolerance);
-        if (own == SCREE_SIGN_UNSURE) own = side == 0 ? scree_vertex_a_above(p, g) : -scree_vertex_b_below(p, g);
+        if (own == SCREE_SIGN_UNSURE)
+            own = side == 0 ? scree_vertex_a_above(&slice->levels, p, g) : -scree_vertex_b_below(&slice->levels, p, g);
         count += own;
     }
     return count;
@@ -352,8 +381,9 @@ SCREE_FN_APART void scree_overlap_find_inside(scree_overlap_slice *slice, int32_
     }
 }
 
-SCREE_FN_APART void scree_overlap_finish_all(const scree_team *team, scree_overlap_body *body)
+SCREE_FN_APART void scree_overlap_finish_all(scree_team lanes, scree_overlap_body *body)
 {
+    const scree_team *team = &lanes;
     for (int32_t t = scree_team_lane(team); t < body->num_triangles; t += scree_team_size(team))
         scree_overlap_finish(body, t);
 }
@@ -368,10 +398,10 @@ SCREE_FN bool scree_overlap_collect(const scree_team *team, scree_overlap_slice 
         slice->num_segments = 0;
         slice->is_closed = true;
     }
-    for (int32_t side = 0; side < 2; ++side) scree_overlap_finish_all(team, slice->body + side);
+    for (int32_t side = 0; side < 2; ++side) scree_overlap_finish_all(*team, slice->body + side);
     scree_team_sync(team);
 #ifdef SCREE_TEAM_OF_MANY
-    const bool has_room = scree_overlap_find_segments_together(team, slice);
+    const bool has_room = scree_overlap_find_segments_together(*team, slice);
 #else
     const bool has_room = scree_overlap_find_segments(slice);
 #endif
@@ -382,7 +412,7 @@ SCREE_FN bool scree_overlap_collect(const scree_team *team, scree_overlap_slice 
         scree_team_sync(team);
         return false;
     }
-    scree_overlap_tie_segments(team, slice, shape);
+    scree_overlap_tie_segments(*team, slice, shape);
     if (scree_team_leads(team))
         for (int32_t side = 0; side < 2; ++side) scree_overlap_find_inside(slice, side);
     scree_team_sync(team);

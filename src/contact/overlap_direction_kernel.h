@@ -7,6 +7,7 @@
 #define SCREE_OVERLAP_DIRECTION_KERNEL_H
 
 #include "contact/overlap_frame_kernel.h"
+#include "core/team.h"
 #include "polyhedra/shape.h"
 
 /// The larger body counts as a wall beyond this ratio of its longest side to the other's.
@@ -127,8 +128,8 @@ SCREE_FN scree_vec3 scree_shallow_direction(const scree_shape_view *a, const scr
 }
 
 /// Direction out of A into B in the body frame of A, of any length; `pose` is that of B in this frame.
-SCREE_FN scree_vec3 scree_overlap_direction(const scree_shape_view *a, const scree_shape_view *b,
-                                            const scree_relative_pose *pose)
+SCREE_FN_APART scree_vec3 scree_overlap_direction(const scree_shape_view *a, const scree_shape_view *b,
+                                                  const scree_relative_pose *pose)
 {
     const scree_vec3 centre_a = scree_box_middle(a->box);
     const scree_vec3 centre_b = scree_affine(&pose->rotation, scree_box_middle(b->box), pose->translation);

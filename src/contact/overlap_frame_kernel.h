@@ -6,7 +6,7 @@
 #ifndef SCREE_OVERLAP_FRAME_KERNEL_H
 #define SCREE_OVERLAP_FRAME_KERNEL_H
 
-#include "core/vec.h"
+#include "core/bits.h"
 
 /// working = rows body + offset, for A (0) and B (1).
 typedef struct scree_overlap_frame
@@ -95,9 +95,9 @@ SCREE_FN scree_mat3 scree_frame_turn_rows(const scree_overlap_frame *frame, cons
     const int32_t x = frame->axis == 2 ? 0 : frame->axis + 1;
     const int32_t y = frame->axis == 0 ? 2 : frame->axis - 1;
     scree_mat3 turned;
-    turned.row[0] = scree_vec3_scale(m->row[x], frame->sign);
-    turned.row[1] = m->row[y];
-    turned.row[2] = scree_vec3_scale(m->row[frame->axis], frame->sign);
+    turned.row[0] = scree_vec3_scale(SCREE_PICK3(m->row, x), frame->sign);
+    turned.row[1] = SCREE_PICK3(m->row, y);
+    turned.row[2] = scree_vec3_scale(SCREE_PICK3(m->row, frame->axis), frame->sign);
     return turned;
 }
 

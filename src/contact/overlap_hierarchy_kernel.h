@@ -90,14 +90,36 @@ SCREE_FN int32_t scree_span_of_b(const scree_line *edge_a, scree_vec3 b)
     return (int32_t)(edge_a->p[1].x < b.x) - (int32_t)(edge_a->p[0].x < b.x);
 }
 
+/// Ends of the common x-range of two edges as they are found: places and distances in y, and whether A is below there.
+typedef struct scree_range_ends
+{
+    scree_place place[2];
+    scree_real distance[2];
+    bool is_below[2];
+    int32_t num;
+    int32_t count; ///< (s01(end) - s01(start)) - (s10(end') - s10(start')): +-1 if they cross in the plane
+} scree_range_ends;
+
+/// What the counts of all levels are found in: memory that is handed down, for what is indexed is kept in no register.
+typedef struct scree_levels
+{
+    scree_line edge;       ///< that is held against a face
+    scree_real y[2], z[2]; ///< of a face at a vertex: its side that does not count, its side that does
+    scree_real height;     ///< between them
+    scree_range_ends ends;
+    scree_place place; ///< where two edges cross in the plane
+    scree_place_pair pair;
+} scree_levels;
+
 /// Height of a face at a vertex of the other body, between the side below it in y and the one that is not, and the
 /// count of the vertex in the face's projection. `is_a` tells whether the vertex is of A. Returns that count, the sum
-/// of s01 or s10 over the sides; the height is set if it is not zero.
-SCREE_FN int32_t scree_vertex_over_face(scree_vec3 vertex, const scree_face *face, bool is_a, scree_real *height)
+/// of s01 or s10 over the sides; levels->height is set if it is not zero.
+SCREE_FN int32_t scree_vertex_over_face(scree_levels *levels, scree_vec3 vertex, const scree_face *face, bool is_a)
 {
-    scree_real y[2] = {0, 0};
-    scree_real z[2] = {0, 0};
+    scree_real *y = levels->y;
+    scree_real *z = levels->z;
     int32_t count = 0;
+    y[0] = y[1] = z[0] = z[1] = 0;
     for (int32_t k = 0; k < 3; ++k)
     {
         const scree_line side = scree_face_side(face, k);
@@ -111,34 +133,22 @@ SCREE_FN int32_t scree_vertex_over_face(scree_vec3 vertex, const scree_face *fac
         z[is_counted] = side_z;
         count += is_counted * span * scree_face_sense(face, k);
     }
-    if (count != 0) *height = scree_between(z[0], z[1], scree_abs(vertex.y - y[0]), scree_abs(y[1] - vertex.y));
+    if (count != 0) levels->height = scree_between(z[0], z[1], scree_abs(vertex.y - y[0]), scree_abs(y[1] - vertex.y));
     return count;
 }
 
 /// s02: a vertex of A over a triangle of B, [z of g <= a.z].
-SCREE_FN int32_t scree_vertex_a_above(scree_vec3 a, const scree_face *face_b)
+SCREE_FN int32_t scree_vertex_a_above(scree_levels *levels, scree_vec3 a, const scree_face *face_b)
 {
-    scree_real z = 0;
-    const int32_t count = scree_vertex_over_face(a, face_b, true, &z);
-    return count != 0 && z <= a.z ? count : 0;
+    const int32_t count = scree_vertex_over_face(levels, a, face_b, true);
+    return count != 0 && levels->height <= a.z ? count : 0;
 }
 /// s20: a vertex of B under a triangle of A, [b.z <= z of f].
-SCREE_FN int32_t scree_vertex_b_below(scree_vec3 b, const scree_face *face_a)
+SCREE_FN int32_t scree_vertex_b_below(scree_levels *levels, scree_vec3 b, const scree_face *face_a)
 {
-    scree_real z = 0;
-    const int32_t count = scree_vertex_over_face(b, face_a, false, &z);
-    return count != 0 && b.z <= z ? count : 0;
+    const int32_t count = scree_vertex_over_face(levels, b, face_a, false);
+    return count != 0 && b.z <= levels->height ? count : 0;
 }
-
-/// Ends of the common x-range of two edges as they are found: places and distances in y, and whether A is below there.
-typedef struct scree_range_ends
-{
-    scree_place place[2];
-    scree_real distance[2];
-    bool is_below[2];
-    int32_t num;
-    int32_t count; ///< (s01(end) - s01(start)) - (s10(end') - s10(start')): +-1 if they cross in the plane
-} scree_range_ends;
 
 SCREE_FN void scree_range_end_of_a(scree_range_ends *ends, scree_vec3 a, const scree_line *edge_b, int32_t sign)
 {
@@ -174,25 +184,26 @@ SCREE_FN void scree_range_end_of_b(scree_range_ends *ends, const scree_line *edg
     ++ends->num;
 }
 
-/// Where an edge of A and an edge of B cross in the plane; returns the count, +-1, or 0 if they do not.
-SCREE_FN int32_t scree_lines_cross(const scree_line *edge_a, const scree_line *edge_b, scree_place *place)
+/// Where an edge of A and an edge of B cross in the plane: levels->place. Returns the count, +-1, or 0 if they do not.
+SCREE_FN int32_t scree_lines_cross(scree_levels *levels, const scree_line *edge_a, const scree_line *edge_b)
 {
-    scree_range_ends ends;
-    ends.num = 0;
-    ends.count = 0;
-    scree_range_end_of_a(&ends, edge_a->p[1], edge_b, 1);
-    scree_range_end_of_a(&ends, edge_a->p[0], edge_b, -1);
-    scree_range_end_of_b(&ends, edge_a, edge_b->p[1], -1);
-    scree_range_end_of_b(&ends, edge_a, edge_b->p[0], 1);
-    if (ends.num != 2 || ends.is_below[0] == ends.is_below[1]) return 0;
+    scree_range_ends *ends = &levels->ends;
+    ends->num = 0;
+    ends->count = 0;
+    scree_range_end_of_a(ends, edge_a->p[1], edge_b, 1);
+    scree_range_end_of_a(ends, edge_a->p[0], edge_b, -1);
+    scree_range_end_of_b(ends, edge_a, edge_b->p[1], -1);
+    scree_range_end_of_b(ends, edge_a, edge_b->p[0], 1);
+    if (ends->num != 2 || ends->is_below[0] == ends->is_below[1]) return 0;
 
-    const scree_real d0 = ends.distance[0];
-    const scree_real d1 = ends.distance[1];
-    place->x = scree_between(ends.place[0].x, ends.place[1].x, d0, d1);
-    place->y = scree_between(ends.place[0].y, ends.place[1].y, d0, d1);
-    place->z_a = scree_between(ends.place[0].z_a, ends.place[1].z_a, d0, d1);
-    place->z_b = scree_between(ends.place[0].z_b, ends.place[1].z_b, d0, d1);
-    return ends.count;
+    const scree_real d0 = ends->distance[0];
+    const scree_real d1 = ends->distance[1];
+    scree_place *place = &levels->place;
+    place->x = scree_between(ends->place[0].x, ends->place[1].x, d0, d1);
+    place->y = scree_between(ends->place[0].y, ends->place[1].y, d0, d1);
+    place->z_a = scree_between(ends->place[0].z_a, ends->place[1].z_a, d0, d1);
+    place->z_b = scree_between(ends->place[0].z_b, ends->place[1].z_b, d0, d1);
+    return ends->count;
 }
 
 /// Keeps the first place of each kind and returns [z of B <= z of A].
@@ -223,64 +234,64 @@ SCREE_FN scree_vec3 scree_place_pair_point(const scree_place_pair *pair, bool is
 
 /// x12: +1 where an edge of A, running up its vertex ids, enters B through a triangle of B, -1 where it leaves, else 0;
 /// with the point of it.
-SCREE_FN int32_t scree_edge_a_crosses(const scree_line *edge_a, const scree_face *face_b, scree_vec3 *point)
+SCREE_FN int32_t scree_edge_a_crosses(scree_levels *levels, const scree_line *edge_a, const scree_face *face_b,
+                                      scree_vec3 *point)
 {
-    scree_place_pair pair;
-    pair.has[0] = false;
-    pair.has[1] = false;
+    scree_place_pair *pair = &levels->pair;
+    pair->has[0] = false;
+    pair->has[1] = false;
     int32_t count = 0;
     for (int32_t end = 0; end < 2; ++end)
     {
-        const scree_vec3 a = edge_a->p[end];
-        scree_place place;
-        place.x = a.x;
-        place.y = a.y;
-        place.z_a = a.z;
-        place.z_b = 0;
-        const int32_t over = scree_vertex_over_face(a, face_b, true, &place.z_b);
+        const scree_vec3 *a = edge_a->p + end;
+        const int32_t over = scree_vertex_over_face(levels, *a, face_b, true);
         if (over == 0) continue;
-        count += (end == 1 ? over : -over) * scree_place_pair_add(&pair, place);
+        scree_place place;
+        place.x = a->x;
+        place.y = a->y;
+        place.z_a = a->z;
+        place.z_b = levels->height;
+        count += (end == 1 ? over : -over) * scree_place_pair_add(pair, place);
     }
     for (int32_t k = 0; k < 3; ++k)
     {
         const scree_line side = scree_face_side(face_b, k);
-        scree_place place;
-        const int32_t crosses = scree_lines_cross(edge_a, &side, &place);
+        const int32_t crosses = scree_lines_cross(levels, edge_a, &side);
         if (crosses == 0) continue;
-        count -= crosses * scree_face_sense(face_b, k) * scree_place_pair_add(&pair, place);
+        count -= crosses * scree_face_sense(face_b, k) * scree_place_pair_add(pair, levels->place);
     }
-    if (count != 0) *point = scree_place_pair_point(&pair, true);
+    if (count != 0) *point = scree_place_pair_point(pair, true);
     return count;
 }
 
 /// x21: -1 where an edge of B, running up its vertex ids, enters A through a triangle of A, +1 where it leaves, else 0.
-SCREE_FN int32_t scree_edge_b_crosses(const scree_face *face_a, const scree_line *edge_b, scree_vec3 *point)
+SCREE_FN int32_t scree_edge_b_crosses(scree_levels *levels, const scree_face *face_a, const scree_line *edge_b,
+                                      scree_vec3 *point)
 {
-    scree_place_pair pair;
-    pair.has[0] = false;
-    pair.has[1] = false;
+    scree_place_pair *pair = &levels->pair;
+    pair->has[0] = false;
+    pair->has[1] = false;
     int32_t count = 0;
     for (int32_t end = 0; end < 2; ++end)
     {
-        const scree_vec3 b = edge_b->p[end];
-        scree_place place;
-        place.x = b.x;
-        place.y = b.y;
-        place.z_a = 0;
-        place.z_b = b.z;
-        const int32_t over = scree_vertex_over_face(b, face_a, false, &place.z_a);
+        const scree_vec3 *b = edge_b->p + end;
+        const int32_t over = scree_vertex_over_face(levels, *b, face_a, false);
         if (over == 0) continue;
-        count += (end == 1 ? over : -over) * scree_place_pair_add(&pair, place);
+        scree_place place;
+        place.x = b->x;
+        place.y = b->y;
+        place.z_a = levels->height;
+        place.z_b = b->z;
+        count += (end == 1 ? over : -over) * scree_place_pair_add(pair, place);
     }
     for (int32_t k = 0; k < 3; ++k)
     {
         const scree_line side = scree_face_side(face_a, k);
-        scree_place place;
-        const int32_t crosses = scree_lines_cross(&side, edge_b, &place);
+        const int32_t crosses = scree_lines_cross(levels, &side, edge_b);
         if (crosses == 0) continue;
-        count += crosses * scree_face_sense(face_a, k) * scree_place_pair_add(&pair, place);
+        count += crosses * scree_face_sense(face_a, k) * scree_place_pair_add(pair, levels->place);
     }
-    if (count != 0) *point = scree_place_pair_point(&pair, false);
+    if (count != 0) *point = scree_place_pair_point(pair, false);
     return count;
 }
 

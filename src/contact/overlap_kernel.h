@@ -47,35 +47,47 @@ SCREE_FN scree_box scree_overlap_body_box(const scree_posed_shape *posed, scree_
     return box;
 }
 
-/// Frame and boxes. False if the boxes are apart.
-SCREE_FN_APART bool scree_overlap_set_up(const scree_overlap_pair *pair, scree_overlap_setup *setup)
+/// Poses and boxes. False if the boxes are apart.
+SCREE_FN_APART bool scree_overlap_set_up_boxes(scree_overlap_pair bodies, scree_overlap_setup *setup)
 {
-    const scree_relative_pose pose = scree_relative_pose_make(pair->pose[0], pair->pose[1]);
+    const scree_overlap_pair *pair = &bodies;
+    setup->pose = scree_relative_pose_make(pair->pose[0], pair->pose[1]);
     const scree_box box_a = pair->shape[0]->box;
-    scree_posed_shape b;
-    b.shape = pair->shape[1];
-    b.rows = pose.rotation;
-    b.offset = pose.translation;
-    const scree_real size = scree_max(scree_box_reach(box_a), scree_box_reach(scree_overlap_body_box(&b, 0)));
-    const scree_box box_b = scree_overlap_body_box(&b, 16 * SCREE_REAL_EPSILON * size);
-    if (!scree_box_overlaps(box_a, box_b)) return false;
+    setup->posed[0].shape = pair->shape[0];
+    setup->posed[1].shape = pair->shape[1];
+    setup->posed[1].rows = setup->pose.rotation;
+    setup->posed[1].offset = setup->pose.translation;
+    const scree_real size =
+        scree_max(scree_box_reach(box_a), scree_box_reach(scree_overlap_body_box(setup->posed + 1, 0)));
+    const scree_box box_b = scree_overlap_body_box(setup->posed + 1, 16 * SCREE_REAL_EPSILON * size);
+    setup->size = size;
+    // what they share
+    setup->box[0].lower = scree_vec3_max(box_a.lower, box_b.lower);
+    setup->box[0].upper = scree_vec3_min(box_a.upper, box_b.upper);
+    setup->extents[0] = scree_box_extent(box_a);
+    setup->extents[1] = scree_box_extent(pair->shape[1]->box) * (pair->pose[1]->scale / pair->pose[0]->scale);
+    return scree_box_overlaps(box_a, box_b);
+}
 
-    // both boxes turned and shifted to the middle of what they share
-    scree_box common;
-    common.lower = scree_vec3_max(box_a.lower, box_b.lower);
-    common.upper = scree_vec3_min(box_a.upper, box_b.upper);
-    const scree_vec3 direction = scree_overlap_direction(pair->shape[0], pair->shape[1], &pose);
-    setup->frame = scree_overlap_frame_make(&pose, direction, scree_box_middle(common));
+/// The frame, and both boxes turned and shifted to the middle of what they share.
+SCREE_FN_APART void scree_overlap_set_up_frame(scree_overlap_setup *setup, scree_vec3 direction)
+{
+    setup->frame = scree_overlap_frame_make(&setup->pose, direction, scree_box_middle(setup->box[0]));
     setup->direction = scree_frame_turn(&setup->frame, direction);
     for (int32_t side = 0; side < 2; ++side)
     {
-        setup->posed[side].shape = pair->shape[side];
         setup->posed[side].rows = setup->frame.rows[side];
         setup->posed[side].offset = setup->frame.offset[side];
-        setup->box[side] = scree_overlap_body_box(setup->posed + side, 32 * SCREE_REAL_EPSILON * size);
+        setup->box[side] = scree_overlap_body_box(setup->posed + side, 32 * SCREE_REAL_EPSILON * setup->size);
     }
-    setup->extents[0] = scree_box_extent(box_a);
-    setup->extents[1] = scree_box_extent(pair->shape[1]->box) * (pair->pose[1]->scale / pair->pose[0]->scale);
+}
+
+/// Frame and boxes. False if the boxes are apart.
+SCREE_FN bool scree_overlap_set_up(const scree_overlap_pair *pair, scree_overlap_setup *setup)
+{
+    if (!scree_overlap_set_up_boxes(*pair, setup)) return false;
+    const scree_vec3 direction = scree_overlap_direction(pair->shape[0], pair->shape[1], &setup->pose);
+    scree_overlap_set_up_frame(setup, direction);
     return true;
 }
 
@@ -83,32 +95,34 @@ SCREE_FN_APART bool scree_overlap_set_up(const scree_overlap_pair *pair, scree_o
 SCREE_FN scree_real scree_overlap_load(const scree_team *team, scree_overlap_body *body, const scree_posed_shape *posed,
                                        scree_vec3 direction)
 {
-    if (!scree_filter_uses_tree(posed->shape)) return scree_filter_load_all(team, body, posed, direction);
+    if (!scree_filter_uses_tree(posed->shape)) return scree_filter_load_all(*team, body, posed, direction);
     const scree_vec3 turned = scree_mat3_apply_transposed(posed->rows, direction);
     const scree_real reach = scree_support_bound(posed->shape->support_map, turned, posed->shape->bounding_radius);
     return reach + scree_vec3_dot(direction, posed->offset);
 }
 
 /// Half-spaces: how far A reaches along the direction, and how far B reaches back. False if they are apart.
-SCREE_FN_APART bool scree_overlap_half_spaces(const scree_team *team, scree_overlap_slice *slice)
+SCREE_FN bool scree_overlap_half_spaces(const scree_team *team, scree_overlap_slice *slice)
 {
     const scree_overlap_setup *setup = &slice->setup;
     const scree_vec3 d = setup->direction;
     const scree_real size = scree_max(scree_box_reach(setup->box[0]), scree_box_reach(setup->box[1]));
     const scree_real rounding = 64 * SCREE_REAL_EPSILON * size * (scree_abs(d.x) + scree_abs(d.y) + scree_abs(d.z));
-    scree_real reach[2];
+    scree_real both = 0;
     for (int32_t side = 0; side < 2; ++side)
     {
         const int32_t other = 1 - side;
         const scree_vec3 direction = side == 0 ? scree_vec3_negate(d) : d;
-        reach[side] = scree_overlap_load(team, slice->body + other, setup->posed + other, direction) + rounding;
+        const scree_real reach =
+            scree_overlap_load(team, slice->body + other, setup->posed + other, direction) + rounding;
+        both += reach;
         if (!scree_team_leads(team)) continue;
         slice->region[side].direction = direction;
         slice->region[side].is_of_a = side == 0;
-        slice->region[side].reach = reach[side];
+        slice->region[side].reach = reach;
     }
     if (scree_team_leads(team)) slice->tolerance = SCREE_SIGN_MARGIN * SCREE_REAL_EPSILON * size;
-    return reach[0] + reach[1] >= 0;
+    return both >= 0;
 }
 
 /// Keeps the triangles of one body that reach into its region, of which the box is that of the other body. False: none,
@@ -121,12 +135,13 @@ SCREE_FN bool scree_overlap_keep(const scree_team *team, scree_overlap_slice *sl
     scree_team_sync(team);
     if (scree_team_leads(team)) region->box = *box;
     scree_team_sync(team);
-    if (!scree_filter_uses_tree(posed->shape)) scree_filter_all(team, body, posed->shape, region->reach);
+    if (!scree_filter_uses_tree(posed->shape)) scree_filter_all(*team, body, posed->shape, region->reach);
     else
     {
         // places of vertices are given as they are found: one lane
         bool has_room = true;
-        if (scree_team_leads(team)) has_room = scree_filter_tree(body, posed, region, slice->setup.box[side]);
+        if (scree_team_leads(team))
+            has_room = scree_filter_tree(body, posed, region, slice->setup.box[side], &slice->walk);
         if (scree_team_any(team, !has_room))
         {
             if (scree_team_leads(team)) slice->lack = SCREE_LACK_PIECES;
@@ -135,7 +150,7 @@ SCREE_FN bool scree_overlap_keep(const scree_team *team, scree_overlap_slice *sl
         }
         scree_team_sync(team);
     }
-    scree_filter_clip(team, body, region, slice->tolerance);
+    scree_filter_clip(*team, body, region, slice->tolerance);
     return body->num_triangles > 0;
 }
 
@@ -152,7 +167,7 @@ SCREE_FN bool scree_overlap_filter(const scree_team *team, scree_overlap_slice *
     if (!scree_overlap_keep(team, slice, 0, &slice->body[1].box)) return false;
     if (scree_team_leads(team)) slice->region[1].box = slice->body[0].box;
     scree_team_sync(team);
-    scree_filter_again(team, slice->body + 1, slice->region + 1);
+    scree_filter_again(*team, slice->body + 1, slice->region + 1);
     return slice->body[1].num_triangles > 0;
 }
 
@@ -237,58 +252,58 @@ SCREE_FN_APART scree_overlap_result scree_overlap_to_world(const scree_overlap_s
 /// Kept triangles, crossings and sums of all, by the default scheme and once more by the hierarchy if its certificate
 /// says so. The status is TOUCHING if there is something, whatever it is.
 SCREE_FN scree_overlap_status scree_overlap_find(const scree_team *team, const scree_overlap_pair *pair,
-                                                 const scree_overlap_options *options, scree_overlap_slice *slice,
-                                                 bool *used_fallback)
+                                                 const scree_overlap_options *options, scree_overlap_slice *slice)
 {
-    *used_fallback = false;
     if (scree_overlap_spheres_apart(pair)) return SCREE_OVERLAP_NONE;
     scree_team_sync(team);
     bool may_touch = true;
     if (scree_team_leads(team))
     {
         slice->lack = SCREE_LACK_NOTHING;
+        slice->used_fallback = false;
+        for (int32_t side = 0; side < 2; ++side) slice->shape[side] = pair->shape[side];
         may_touch = scree_overlap_set_up(pair, &slice->setup);
     }
     if (scree_team_any(team, !may_touch)) return SCREE_OVERLAP_NONE;
     scree_team_sync(team);
     if (!scree_overlap_filter(team, slice))
         return slice->lack != SCREE_LACK_NOTHING ? SCREE_OVERLAP_WORKSPACE_FULL : SCREE_OVERLAP_NONE;
-    const bool is_convex = options->use_convex_path && pair->shape[0]->is_convex && pair->shape[1]->is_convex;
     scree_overlap_scheme scheme = options->scheme;
     for (;;)
     {
         scree_overlap_prepare(team, slice, scheme);
-        bool is_simple = is_convex && scheme == SCREE_OVERLAP_FILTERED;
+        bool is_simple = scheme == SCREE_OVERLAP_FILTERED && options->use_convex_path && slice->shape[0]->is_convex &&
+                         slice->shape[1]->is_convex;
         if (is_simple)
         {
-            if (scree_team_leads(team)) is_simple = scree_convex_collect(slice, pair->shape);
+            if (scree_team_leads(team)) is_simple = scree_convex_collect(slice, slice->shape);
             is_simple = !scree_team_any(team, !is_simple);
             scree_team_sync(team);
             if (!is_simple) scree_overlap_prepare(team, slice, scheme);
         }
-        if (!is_simple && !scree_overlap_collect(team, slice, pair->shape)) return SCREE_OVERLAP_WORKSPACE_FULL;
+        if (!is_simple && !scree_overlap_collect(team, slice, slice->shape)) return SCREE_OVERLAP_WORKSPACE_FULL;
         if (scree_team_leads(team)) slice->num_patches = 1;
-        scree_overlap_sum(team, slice, pair->shape, 0, &slice->sums);
+        scree_overlap_sum(team, slice, slice->shape, 0, &slice->sums);
         if (scree_team_leads(team) && !slice->is_closed) slice->sums.residual = scree_max(slice->sums.residual, 1);
         scree_team_sync(team);
         if (scheme == SCREE_OVERLAP_HIERARCHY || slice->sums.residual <= SCREE_RESIDUAL_LIMIT)
             return SCREE_OVERLAP_TOUCHING;
         scree_team_sync(team);
         scheme = SCREE_OVERLAP_HIERARCHY;
-        *used_fallback = true;
+        if (scree_team_leads(team)) slice->used_fallback = true;
     }
 }
 
 /// Results of the patches, one after the other; the first max_results are written. Returns their number. Of one lane.
-SCREE_FN_APART int32_t scree_overlap_patch_results(const scree_overlap_pair *pair, scree_overlap_slice *slice,
+SCREE_FN_APART int32_t scree_overlap_patch_results(scree_overlap_slice *slice, const scree_pose *pose_a,
                                                    scree_overlap_result *results, int32_t max_results)
 {
     const scree_team team = scree_team_alone();
     int32_t num = 0;
     for (int32_t patch = 0; patch < slice->num_patches; ++patch)
     {
-        scree_overlap_sum(&team, slice, pair->shape, patch, &slice->sums);
-        const scree_overlap_result result = scree_overlap_to_world(slice, pair->pose[0]);
+        scree_overlap_sum(&team, slice, slice->shape, patch, &slice->sums);
+        const scree_overlap_result result = scree_overlap_to_world(slice, pose_a);
         // pieces without volume are noise
         if (result.status == SCREE_OVERLAP_NONE && num + slice->num_patches - patch > 1) continue;
         if (num < max_results) results[num] = result;
@@ -304,18 +319,17 @@ SCREE_FN int32_t scree_overlap_team_compute(const scree_team *team, const scree_
                                             const scree_overlap_options *options, scree_overlap_slice *slice,
                                             scree_overlap_result *results, int32_t max_results)
 {
-    bool used_fallback;
-    const scree_overlap_status status = scree_overlap_find(team, pair, options, slice, &used_fallback);
+    const scree_overlap_status status = scree_overlap_find(team, pair, options, slice);
     // all have read the sums, which those of patches take the place of
     scree_team_sync(team);
     if (!scree_team_leads(team)) return 1;
     results[0] = scree_overlap_nothing(status);
     if (status != SCREE_OVERLAP_TOUCHING) return 1;
     int32_t num = 1;
-    if (options->separate_patches && scree_overlap_find_patches(slice, pair->shape) > 1)
-        num = scree_overlap_patch_results(pair, slice, results, max_results);
+    if (options->separate_patches && scree_overlap_find_patches(slice, slice->shape) > 1)
+        num = scree_overlap_patch_results(slice, pair->pose[0], results, max_results);
     else results[0] = scree_overlap_to_world(slice, pair->pose[0]);
-    for (int32_t i = 0; i < num && i < max_results; ++i) results[i].used_fallback = used_fallback;
+    for (int32_t i = 0; i < num && i < max_results; ++i) results[i].used_fallback = slice->used_fallback;
     return num;
 }
 

@@ -7,6 +7,7 @@
 #define SCREE_OVERLAP_MEET_KERNEL_H
 
 #include "contact/overlap_parts.h"
+#include "core/bits.h"
 
 /// What the signs say about two triangles.
 typedef enum scree_meet_verdict
@@ -50,8 +51,8 @@ SCREE_FN void scree_segment_end_set(scree_segment_end *end, int32_t is_of_b, int
     end->side = scree_next_corner(lone) == other ? lone : other;
     end->corner[0] = lone;
     end->corner[1] = other;
-    end->height[0] = height[lone];
-    end->height[1] = height[other];
+    end->height[0] = SCREE_PICK3(height, lone);
+    end->height[1] = SCREE_PICK3(height, other);
     end->has_point = false;
 }
 
@@ -62,8 +63,8 @@ SCREE_FN scree_vec3 scree_segment_end_point(const scree_segment_end *end, const 
     const scree_real h0 = end->height[0];
     const scree_real h1 = end->height[1];
     const int32_t nearer = scree_abs(h0) <= scree_abs(h1) ? 0 : 1;
-    const scree_vec3 start = own->p[end->corner[nearer]];
-    const scree_vec3 along = scree_vec3_sub(own->p[end->corner[1 - nearer]], start);
+    const scree_vec3 start = own->p[SCREE_PICK2(end->corner, nearer)];
+    const scree_vec3 along = scree_vec3_sub(own->p[SCREE_PICK2(end->corner, 1 - nearer)], start);
     const scree_real part = nearer == 0 ? h0 / (h0 - h1) : h1 / (h1 - h0);
     return scree_vec3_add_scaled(start, along, part);
 }

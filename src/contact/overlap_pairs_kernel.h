@@ -27,7 +27,8 @@ SCREE_FN int32_t scree_overlap_num_lanes(int32_t num_triangles)
 
 /// Entry m of the batch, worked on by index i of the launch. Without enough room nothing but the lack is noted: the
 /// host makes room and launches again.
-SCREE_FN void scree_overlap_of_pair(const scree_overlap_pairs_args *a, const scree_team *team, int64_t i, int32_t m)
+SCREE_FN void scree_overlap_of_pair(const scree_overlap_pairs_args *a, const scree_team *team, int64_t i, int32_t m,
+                                    bool may_separate)
 {
     const scree_mesh_pairs_args *meshes = &a->meshes;
     const int32_t p = meshes->batch[m];
@@ -40,7 +41,9 @@ SCREE_FN void scree_overlap_of_pair(const scree_overlap_pairs_args *a, const scr
     }
     scree_overlap_slice *slice = a->slices + i;
     scree_overlap_result *results = a->results + i * a->max_results;
-    const int32_t num = scree_overlap_team_compute(team, &pair, &a->options, slice, results, a->max_results);
+    scree_overlap_options options = a->options;
+    options.separate_patches = options.separate_patches && may_separate;
+    const int32_t num = scree_overlap_team_compute(team, &pair, &options, slice, results, a->max_results);
     if (!scree_team_leads(team)) return;
     if (results[0].status == SCREE_OVERLAP_WORKSPACE_FULL)
         scree_atomic_count(meshes->tally->num_lacking + slice->lack, 1);
@@ -48,28 +51,49 @@ SCREE_FN void scree_overlap_of_pair(const scree_overlap_pairs_args *a, const scr
     else scree_mesh_pair_note(meshes, m, results, num);
 }
 
-SCREE_FN void scree_overlap_pairs_team_at(scree_overlap_pairs_args a, const scree_team *team, int64_t i)
+/// Index i takes pairs and works on them. `may_separate`: patches may be told apart.
+SCREE_FN void scree_overlap_take_pairs(const scree_overlap_pairs_args *a, const scree_team *team, int64_t i,
+                                       bool may_separate)
 {
-    const int64_t num_active = a.meshes.tally->num_active;
+    const int64_t num_active = a->meshes.tally->num_active;
     for (;;)
     {
         // the one who leads takes for all; batches have indices of 32 bits
         int32_t taken = 0;
-        if (scree_team_leads(team)) taken = (int32_t)scree_atomic_count(&a.meshes.tally->num_taken, a.num_at_once);
+        if (scree_team_leads(team)) taken = (int32_t)scree_atomic_count(&a->meshes.tally->num_taken, a->num_at_once);
         const int64_t begin = scree_team_sum(team, taken);
         if (begin >= num_active) return;
-        for (int64_t k = begin; k < begin + a.num_at_once && k < num_active; ++k)
+        for (int64_t k = begin; k < begin + a->num_at_once && k < num_active; ++k)
         {
-            scree_overlap_of_pair(&a, team, i, a.meshes.active[k]);
+            scree_overlap_of_pair(a, team, i, a->meshes.active[k], may_separate);
             scree_team_sync(team);
         }
     }
+}
+
+SCREE_FN void scree_overlap_pairs_team_at(scree_overlap_pairs_args a, const scree_team *team, int64_t i)
+{
+    scree_overlap_take_pairs(&a, team, i, false);
 }
 
 SCREE_FN void scree_overlap_pairs_at(scree_overlap_pairs_args a, int64_t i)
 {
     const scree_team team = scree_team_alone();
     scree_overlap_pairs_team_at(a, &team, i);
+}
+
+/// The same where patches are told apart: by itself, because it takes a stack on a GPU that no other step needs.
+typedef scree_overlap_pairs_args scree_overlap_patches_args;
+
+SCREE_FN void scree_overlap_patches_team_at(scree_overlap_patches_args a, const scree_team *team, int64_t i)
+{
+    scree_overlap_take_pairs(&a, team, i, true);
+}
+
+SCREE_FN void scree_overlap_patches_at(scree_overlap_patches_args a, int64_t i)
+{
+    const scree_team team = scree_team_alone();
+    scree_overlap_patches_team_at(a, &team, i);
 }
 
 #endif

@@ -150,6 +150,8 @@ typedef struct scree_posed_shape
 /// What is known of a pair once its frame is chosen.
 typedef struct scree_overlap_setup
 {
+    scree_relative_pose pose; ///< of B to A
+    scree_real size;          ///< largest coordinate of both, in the body frame of A
     scree_overlap_frame frame;
     scree_posed_shape posed[2];
     scree_vec3 direction;  ///< out of A into B, along the working axes, any length
@@ -170,14 +172,18 @@ typedef struct scree_overlap_slice
     int32_t num_patches; ///< 1: all is one patch, nothing is labelled
     bool is_closed;      ///< every crossing has its partners
     scree_overlap_lack lack;
-    scree_box common;          ///< of the two boxes of kept triangles
-    scree_real tolerance;      ///< 64 eps L, L the largest coordinate in play
-    scree_real sign_tolerance; ///< the same, or 0: hierarchy throughout
+    bool used_fallback;               ///< the certificate of the filtered scheme was not good enough
+    scree_box common;                 ///< of the two boxes of kept triangles
+    scree_real tolerance;             ///< 64 eps L, L the largest coordinate in play
+    scree_real sign_tolerance;        ///< the same, or 0: hierarchy throughout
+    const scree_shape_view *shape[2]; ///< of A and B
     scree_overlap_setup setup;
     scree_filter_region region[2]; ///< what triangles of A, of B must reach into
     scree_overlap_sums sums;
     scree_segment_end ends[2][6];  ///< of two triangles decided side by side: first ends, last ends
     scree_convex_planes planes[2]; ///< of the convex path
+    scree_wide_walk walk;          ///< over a tree
+    scree_levels levels;           ///< of the hierarchy
 } scree_overlap_slice;
 
 #endif

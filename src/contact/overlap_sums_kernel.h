@@ -156,9 +156,10 @@ SCREE_FN void scree_overlap_sums_close(scree_overlap_sums *sums, const scree_ove
 }
 
 /// Segments: edges of the solid between a face of A and a face of B.
-SCREE_FN_APART void scree_overlap_sum_segments(const scree_team *team, scree_overlap_slice *slice, int32_t patch,
+SCREE_FN_APART void scree_overlap_sum_segments(scree_team lanes, scree_overlap_slice *slice, int32_t patch,
                                                scree_overlap_sums *sums)
 {
+    const scree_team *team = &lanes;
     scree_overlap_sums copy;
     scree_overlap_sums *own = scree_overlap_sums_open(sums, &copy);
     for (int32_t begin = 0; begin < slice->num_segments; begin += scree_team_size(team))
@@ -293,7 +294,7 @@ SCREE_FN void scree_overlap_sum(const scree_team *team, scree_overlap_slice *sli
             if (slice->body[side].kept[t].is_finished)
                 scree_overlap_plane_foot(slice->body[side].triangles + t, sums->middle);
     scree_team_sync(team);
-    scree_overlap_sum_segments(team, slice, patch, sums);
+    scree_overlap_sum_segments(*team, slice, patch, sums);
     if (scree_team_leads(team))
     {
         for (int32_t side = 0; side < 2; ++side) scree_overlap_sum_intervals(slice, side, shape[side], patch, sums);

@@ -23,9 +23,10 @@ SCREE_FN scree_vec3 scree_posed_vertex(const scree_posed_shape *posed, int32_t v
 
 /// All vertices into the working frame, in the order of the shape. Returns the largest direction . v; the depths are
 /// -direction . v until the reach of the half-space is known.
-SCREE_FN_APART scree_real scree_filter_load_all(const scree_team *team, scree_overlap_body *body,
+SCREE_FN_APART scree_real scree_filter_load_all(scree_team lanes, scree_overlap_body *body,
                                                 const scree_posed_shape *posed, scree_vec3 direction)
 {
+    const scree_team *team = &lanes;
     const int32_t num = posed->shape->num_vertices;
     scree_real most = -SCREE_REAL_MAX;
     for (int32_t v = scree_team_lane(team); v < num; v += scree_team_size(team))
@@ -53,9 +54,10 @@ SCREE_FN bool scree_filter_misses(const scree_filter_region *region, const scree
 }
 
 /// Keeps triangles of a loaded body that reach into the half-space, of which the reach is known now.
-SCREE_FN_APART void scree_filter_all(const scree_team *team, scree_overlap_body *body, const scree_shape_view *shape,
+SCREE_FN_APART void scree_filter_all(scree_team lanes, scree_overlap_body *body, const scree_shape_view *shape,
                                      scree_real reach)
 {
+    const scree_team *team = &lanes;
     // what was loaded is the distance along the direction of the other's half-space, which is opposite
     scree_overlap_vertex *vertices = body->vertices;
     for (int32_t v = scree_team_lane(team); v < body->num_vertices; v += scree_team_size(team))
@@ -133,22 +135,21 @@ SCREE_FN scree_filter_region scree_filter_in_body(const scree_posed_shape *posed
 }
 
 /// Keeps triangles through the tree that reach into the half-space and may meet the box; `body_box` is the box of the
-/// whole body. False if the buffers are too small.
+/// whole body, `walk` is used. False if the buffers are too small.
 SCREE_FN_APART bool scree_filter_tree(scree_overlap_body *body, const scree_posed_shape *posed,
-                                      const scree_filter_region *region, scree_box body_box)
+                                      const scree_filter_region *region, scree_box body_box, scree_wide_walk *walk)
 {
     const scree_filter_region turned = scree_filter_in_body(posed, region, body_box);
     const scree_shape_view *shape = posed->shape;
     const scree_wide_query query =
         scree_wide_query_make(turned.box, turned.direction, turned.reach, scree_box_reach(shape->box));
-    scree_wide_walk walk;
-    scree_wide_walk_start(&shape->wide_tree, &query, &walk);
+    scree_wide_walk_start(&shape->wide_tree, &query, walk);
     body->num_vertices = 0;
     int32_t num = 0;
     for (;;)
     {
         uint32_t found;
-        const int32_t node = scree_wide_walk_next(&shape->wide_tree, &query, &walk, &found);
+        const int32_t node = scree_wide_walk_next(&shape->wide_tree, &query, walk, &found);
         body->num_triangles = num;
         if (node < 0) return true;
         if (num + SCREE_WIDE_CHILDREN > body->max_triangles ||
@@ -186,9 +187,9 @@ SCREE_FN scree_box scree_filter_clipped_box(const scree_overlap_vertex *vertices
     // the corner alone on its side, and the two places where the sides from there leave the half-space: the other
     // corners, up to rounding, if all are within; points are chosen, not branches, which could not be foreseen
     const int32_t lone = scree_lone_corner(outs);
-    const scree_overlap_vertex *from = vertices + v[lone];
-    const scree_overlap_vertex *next = vertices + v[scree_next_corner(lone)];
-    const scree_overlap_vertex *last = vertices + v[scree_corner_before(lone)];
+    const scree_overlap_vertex *from = vertices + SCREE_PICK3(v, lone);
+    const scree_overlap_vertex *next = vertices + SCREE_PICK3(v, scree_next_corner(lone));
+    const scree_overlap_vertex *last = vertices + SCREE_PICK3(v, scree_corner_before(lone));
     const scree_real to_next = from->depth / (from->depth - next->depth);
     const scree_real to_last = from->depth / (from->depth - last->depth);
     const scree_vec3 at_next =
@@ -220,9 +221,10 @@ SCREE_FN void scree_filter_end(const scree_team *team, scree_overlap_body *body,
 }
 
 /// Boxes of the kept triangles, clipped to the half-space; drops those that do not reach into the region with it.
-SCREE_FN_APART void scree_filter_clip(const scree_team *team, scree_overlap_body *body,
-                                      const scree_filter_region *region, scree_real margin)
+SCREE_FN_APART void scree_filter_clip(scree_team lanes, scree_overlap_body *body, const scree_filter_region *region,
+                                      scree_real margin)
 {
+    const scree_team *team = &lanes;
     const scree_vec3 margins = scree_vec3_make(margin, margin, margin);
     const int32_t num_before = body->num_triangles;
     int32_t num = 0;
@@ -244,9 +246,9 @@ SCREE_FN_APART void scree_filter_clip(const scree_team *team, scree_overlap_body
 }
 
 /// Drops triangles that do not reach into a smaller region with the same half-space.
-SCREE_FN_APART void scree_filter_again(const scree_team *team, scree_overlap_body *body,
-                                       const scree_filter_region *region)
+SCREE_FN_APART void scree_filter_again(scree_team lanes, scree_overlap_body *body, const scree_filter_region *region)
 {
+    const scree_team *team = &lanes;
     const int32_t num_before = body->num_triangles;
     int32_t num = 0;
     for (int32_t begin = 0; begin < num_before; begin += scree_team_size(team))

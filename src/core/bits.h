@@ -15,6 +15,15 @@ SCREE_FN int32_t scree_lowest_bit(uint64_t word)
 #endif
 }
 
+/// Item k of two or three. On a GPU it is chosen among them: what is indexed would not be kept in registers.
+#ifdef __CUDA_ARCH__
+#define SCREE_PICK2(items, k) ((k) == 0 ? (items)[0] : (items)[1])
+#define SCREE_PICK3(items, k) ((k) == 0 ? (items)[0] : (k) == 1 ? (items)[1] : (items)[2])
+#else
+#define SCREE_PICK2(items, k) ((items)[k])
+#define SCREE_PICK3(items, k) ((items)[k])
+#endif
+
 /// The bits of a number.
 SCREE_FN uint64_t scree_bits_of(double number)
 {

@@ -24,8 +24,10 @@ REASONS = {
     "scree_particle_pairs": "32 keys wait in a batch, so that one atomic serves them all; runs at neighbour searches only",
     "scree_wall_pairs": "as scree_particle_pairs",
     "scree_sphere_mesh_count": "for 12.0 the compiler stops at 128 registers: some values of the walk over the mesh's tree wait",
-    "scree_overlap_pairs": "a whole overlap by a team of lanes; the frame is that of the results and of the steps that one "
-    "lane does (walk over a tree, sums over edges, patches), which keep registers of their callers",
+    "scree_overlap_pairs": "a whole overlap by a team of lanes, with all registers there are: one of them waits while two triangles are "
+    "decided side by side by the hierarchy, which is rare",
+    "scree_overlap_patches": "as scree_overlap_pairs; telling patches apart, by one lane, sums over the edges of each tree of corners anew; "
+    "only where a scene asks for patches",
 }
 
 HEAD = """# What the kernels take on a GPU

@@ -58,14 +58,16 @@ static scree_sign_verdict faulty_edge_sign(const scree_line *edge, scree_real si
     return (scree_sign_verdict)spoil_crossing((int32_t)verdict, edge, g, point);
 }
 
-static int32_t faulty_edge_a_crosses(const scree_line *edge_a, const scree_face *face_b, scree_vec3 *point)
+static int32_t faulty_edge_a_crosses(scree_levels *levels, const scree_line *edge_a, const scree_face *face_b,
+                                     scree_vec3 *point)
 {
-    return spoil_crossing(scree_edge_a_crosses(edge_a, face_b, point), edge_a, face_b, point);
+    return spoil_crossing(scree_edge_a_crosses(levels, edge_a, face_b, point), edge_a, face_b, point);
 }
 
-static int32_t faulty_edge_b_crosses(const scree_face *face_a, const scree_line *edge_b, scree_vec3 *point)
+static int32_t faulty_edge_b_crosses(scree_levels *levels, const scree_face *face_a, const scree_line *edge_b,
+                                     scree_vec3 *point)
 {
-    return spoil_crossing(scree_edge_b_crosses(face_a, edge_b, point), edge_b, face_a, point);
+    return spoil_crossing(scree_edge_b_crosses(levels, face_a, edge_b, point), edge_b, face_a, point);
 }
 
 /// A pair of triangles that is decided as a whole is spoilt as a whole.

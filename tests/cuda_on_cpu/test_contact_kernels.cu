@@ -6,6 +6,7 @@
 #include <malloc.h>
 
 SCREE_DECLARE_LAUNCH_CUDA(scree_overlap_pairs)
+SCREE_DECLARE_LAUNCH_CUDA(scree_overlap_patches)
 SCREE_DECLARE_LAUNCH_CUDA(scree_place_spheres)
 SCREE_DECLARE_LAUNCH_CUDA(scree_sphere_sphere_count)
 SCREE_DECLARE_LAUNCH_CUDA(scree_sphere_sphere_write)
@@ -85,7 +86,7 @@ static void keep_geometry(side &where, const scree_contact_list &list, int64_t n
 }
 
 /// The pairs of meshes, from all candidates to what they write into the list.
-static void find_overlaps_on(side &where)
+static void find_overlaps_on(side &where, bool separates)
 {
     const int64_t num_pairs = s->broad_phase.num_pairs;
     scree_mesh_pairs_args args = {};
@@ -134,11 +135,13 @@ static void find_overlaps_on(side &where)
     overlaps.meshes = args;
     overlaps.slices = where.copy(slices.data(), num_slices);
     overlaps.options = s->narrow_phase.options;
-    overlaps.results = where.make<scree_overlap_result>(num_slices);
-    overlaps.max_results = 1;
+    overlaps.options.separate_patches = separates;
+    overlaps.max_results = separates ? 4 : 1;
+    overlaps.results = where.make<scree_overlap_result>(num_slices * overlaps.max_results);
     overlaps.num_at_once = 3;
     overlaps.num_lanes = 8;
-    LAUNCH_ON(where, scree_overlap_pairs, overlaps, num_slices);
+    if (separates) LAUNCH_ON(where, scree_overlap_patches, overlaps, num_slices);
+    else LAUNCH_ON(where, scree_overlap_pairs, overlaps, num_slices);
     where.keep(args.memory, num);
     const scree_pair_tally tally = where.read(args.tally, 1)[0];
     SCREE_CHECK(tally.num_active > 20 && tally.num_active < num && tally.num_lacking[SCREE_LACK_PIECES] == 0);
@@ -155,7 +158,11 @@ static void find_overlaps_on(side &where)
     keep_geometry(where, args.list, n);
 }
 
-static void test_overlaps() { check_two_sides(find_overlaps_on); }
+static void test_overlaps()
+{
+    check_two_sides([](side &where) { find_overlaps_on(where, false); });
+    check_two_sides([](side &where) { find_overlaps_on(where, true); });
+}
 
 /// Both passes over the pairs of two spheres, of a sphere or clump and a mesh, or of two clumps.
 static void find_spheres_on(side &where, scree_pair_kind kind)

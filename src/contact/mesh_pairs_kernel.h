@@ -39,9 +39,11 @@ typedef struct scree_mesh_pairs_args
     const scree_candidate_pair *pairs; ///< (num_pairs) all candidate pairs
     const int32_t *batch;              ///< (num in batch) indices of those of two meshes
     scree_pair_memory *memory;         ///< (num in batch)
-    int32_t *active;                   ///< (num in batch) entries that may touch, in any order
-    scree_kept_overlap *kept;          ///< (max_kept) overlaps of all entries that touch; of one entry in order
-    scree_kept_lever *kept_levers;     ///< (max_kept) or NULL if the list has none
+    int32_t *active; ///< (classes.last - classes.first + 1, max_active) entries that may touch, by class, in any order
+    int64_t max_active;
+    scree_work_classes classes;
+    scree_kept_overlap *kept;      ///< (max_kept) overlaps of all entries that touch; of one entry in order
+    scree_kept_lever *kept_levers; ///< (max_kept) or NULL if the list has none
     int64_t max_kept;
     int32_t *first_kept;     ///< (num in batch) place of the first one of an entry that touches
     scree_contact_list list; ///< number of contacts to first_of_pair; geometry by the last kernel
@@ -52,6 +54,31 @@ typedef struct scree_mesh_pairs_args
 typedef scree_mesh_pairs_args scree_mesh_apart_args;
 typedef scree_mesh_pairs_args scree_mesh_gap_args;
 typedef scree_mesh_pairs_args scree_mesh_write_args;
+
+/// Class of a pair by the triangles of both bodies together. Few lanes where few triangles are kept, so that more pairs
+/// are under way at once; no result depends on it.
+SCREE_FN int32_t scree_work_class(int32_t num_triangles)
+{
+    return num_triangles < 2 * SCREE_LARGE_SHAPE ? 0 : num_triangles < 512 ? 1 : 2;
+}
+/// Lanes of a team for it.
+SCREE_FN int32_t scree_work_num_lanes(int32_t work_class) { return 8 << work_class; }
+
+SCREE_FN int32_t scree_work_class_of_pair(const scree_mesh_pairs_args *a, scree_candidate_pair pair)
+{
+    if (a->classes.first == a->classes.last) return a->classes.first;
+    const int32_t work_class = scree_work_class(a->bodies.shapes[a->bodies.shape[pair.i]].num_triangles +
+                                                a->bodies.shapes[a->bodies.shape[pair.j]].num_triangles);
+    return work_class < a->classes.first  ? a->classes.first
+           : work_class > a->classes.last ? a->classes.last
+                                          : work_class;
+}
+
+/// Active entries of a class.
+SCREE_FN int32_t *scree_active_of_class(const scree_mesh_pairs_args *a, int32_t work_class)
+{
+    return a->active + (work_class - a->classes.first) * a->max_active;
+}
 
 /// Bound of the travels for a pair with a gap: a hair less, for the rounding of the travels and of this number.
 SCREE_FN float scree_apart_until(scree_real travelled, scree_real gap)
@@ -87,7 +114,8 @@ SCREE_FN void scree_mesh_apart_at(scree_mesh_apart_args a, int64_t m)
     const int32_t p = a.batch[m];
     a.list.first_of_pair[p] = 0;
     if (scree_pair_is_apart(&a.bodies, a.pairs[p], a.memory + m, a.use)) return;
-    a.active[scree_atomic_count(&a.tally->num_active, 1)] = (int32_t)m;
+    const int32_t work_class = scree_work_class_of_pair(&a, a.pairs[p]);
+    scree_active_of_class(&a, work_class)[scree_atomic_count(a.tally->num_active + work_class, 1)] = (int32_t)m;
 }
 
 SCREE_FN void scree_keep_overlap(const scree_mesh_pairs_args *a, int64_t k, const scree_overlap_result *result)

@@ -32,7 +32,7 @@ struct scree_narrow_phase_buffers
     scree_kept_lever *kept_levers; ///< (max_kept) or NULL
     int64_t max_kept;
     int32_t *first_kept;       ///< (num in batch)
-    int32_t *active;           ///< (num in batch)
+    int32_t *active;           ///< (num of classes, max_mesh_pairs)
     scree_pair_memory *memory; ///< (num in batch)
     int64_t max_mesh_pairs;
 
@@ -99,6 +99,23 @@ static bool renew(scree_device *device, void *array, int64_t num, size_t size)
     return *items != NULL;
 }
 
+/// Lanes that work on an overlap together.
+static int32_t num_lanes_of(const scree_narrow_phase *narrow_phase, int32_t work_class)
+{
+    return narrow_phase->device != NULL ? scree_work_num_lanes(work_class) : 1;
+}
+
+/// Overlaps of a class that can be under way at once.
+static int64_t num_at_once(const scree_narrow_phase *narrow_phase, int32_t work_class)
+{
+    return scree_device_concurrency(narrow_phase->device) / num_lanes_of(narrow_phase, work_class);
+}
+
+static int64_t num_classes(const scree_narrow_phase *narrow_phase)
+{
+    return narrow_phase->classes.last - narrow_phase->classes.first + 1;
+}
+
 /// Room for what is known of each pair of meshes. Growing forgets it.
 static scree_status reserve_mesh_pairs(scree_narrow_phase *narrow_phase)
 {
@@ -106,10 +123,10 @@ static scree_status reserve_mesh_pairs(scree_narrow_phase *narrow_phase)
     scree_device *device = narrow_phase->device;
     const int64_t num = b->batches[SCREE_PAIR_MESH_MESH].num;
     if (num <= b->max_mesh_pairs) return SCREE_OK;
-    const int64_t max = scree_buffer_grown(num);
+    const int64_t max = scree_buffer_grown(num), num_lists = num_classes(narrow_phase);
     b->max_mesh_pairs = 0;
     const bool is_complete = renew(device, &b->first_kept, max, sizeof *b->first_kept) &&
-                             renew(device, &b->active, max, sizeof *b->active) &&
+                             renew(device, &b->active, num_lists * max, sizeof *b->active) &&
                              renew(device, &b->memory, max, sizeof *b->memory);
     if (!is_complete) return SCREE_OUT_OF_MEMORY;
     scree_device_zero(device, b->memory, (size_t)max * sizeof *b->memory);
@@ -152,9 +169,8 @@ static scree_status reserve_slices(scree_narrow_phase *narrow_phase, scree_overl
 {
     struct scree_narrow_phase_buffers *b = narrow_phase->buffers;
     if (b->batches[SCREE_PAIR_MESH_MESH].num == 0) return SCREE_OK;
-    const int64_t num_lanes = narrow_phase->num_lanes > 0 ? narrow_phase->num_lanes : 1;
-    const scree_status status =
-        scree_overlap_pool_reserve(&b->pool, scree_device_concurrency(narrow_phase->device) / num_lanes, room);
+    const int64_t num_slices_wanted = num_at_once(narrow_phase, narrow_phase->classes.first);
+    const scree_status status = scree_overlap_pool_reserve(&b->pool, num_slices_wanted, room);
     if (status != SCREE_OK) return status;
     const int64_t num_slices = b->pool.num_slices;
     if (num_slices <= b->num_with_results && max_results <= b->max_results) return SCREE_OK;
@@ -231,6 +247,8 @@ static scree_mesh_pairs_args mesh_args(const search *s)
     args.batch = b->batches[SCREE_PAIR_MESH_MESH].pairs;
     args.memory = b->memory;
     args.active = b->active;
+    args.max_active = b->max_mesh_pairs;
+    args.classes = s->narrow_phase->classes;
     args.kept = b->kept;
     args.kept_levers = s->list->has_no_levers ? NULL : b->kept_levers;
     args.max_kept = b->max_kept;
@@ -274,7 +292,9 @@ static scree_status place_spheres(const search *s)
     return SCREE_OK;
 }
 
-/// Overlaps of the pairs of meshes that may touch.
+static int64_t smaller(int64_t a, int64_t b) { return a < b ? a : b; }
+
+/// Overlaps of the pairs of meshes that may touch, class by class.
 static void find_overlaps(const search *s)
 {
     const struct scree_narrow_phase_buffers *b = s->narrow_phase->buffers;
@@ -291,12 +311,16 @@ static void find_overlaps(const search *s)
     overlaps.max_results = b->max_results;
     overlaps.options = s->narrow_phase->options;
     // threads of the CPU take several at once, so that they meet seldom
-    overlaps.num_lanes = s->narrow_phase->num_lanes > 0 ? s->narrow_phase->num_lanes : 1;
     overlaps.num_at_once = device == NULL ? 8 : 1;
-    const int64_t most = (num + overlaps.num_at_once - 1) / overlaps.num_at_once;
-    const int64_t num_takers = most < b->pool.num_slices ? most : b->pool.num_slices;
-    if (overlaps.options.separate_patches) scree_overlap_patches_launch_on(device, overlaps, num_takers);
-    else scree_overlap_pairs_launch_on(device, overlaps, num_takers);
+    for (int32_t c = args.classes.first; c <= args.classes.last; ++c)
+    {
+        overlaps.work_class = c;
+        overlaps.num_lanes = num_lanes_of(s->narrow_phase, c);
+        int64_t num_takers = (num + overlaps.num_at_once - 1) / overlaps.num_at_once;
+        num_takers = smaller(num_takers, smaller(b->pool.num_slices, num_at_once(s->narrow_phase, c)));
+        if (overlaps.options.separate_patches) scree_overlap_patches_launch_on(device, overlaps, num_takers);
+        else scree_overlap_pairs_launch_on(device, overlaps, num_takers);
+    }
 }
 
 /// How many contacts each pair has, added up in the list. Returns the counts of the search; what was found of a pair

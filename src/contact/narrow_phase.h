@@ -41,13 +41,20 @@ typedef struct scree_narrow_phase_counts
     int64_t num_inside; ///< spheres or clumps with a centre of a sphere inside the solid of a mesh
 } scree_narrow_phase_counts;
 
+/// Pairs of meshes by their work, for a GPU: each class goes to teams of its own size, see scree_work_class().
+#define SCREE_NUM_WORK_CLASSES 3
+typedef struct scree_work_classes
+{
+    int32_t first, last; ///< classes that there are; the same: pairs need not be told apart
+} scree_work_classes;
+
 /// Owns the workspaces and the results per pair. Start from {0}, or from {.device = ...} for bodies, pairs and list on
 /// a GPU.
 typedef struct scree_narrow_phase
 {
-    scree_device *device;    ///< where all arrays lie, NULL: the CPU
-    scree_overlap_room room; ///< of an overlap, to begin with; 0: chosen
-    int32_t num_lanes;       ///< that work on an overlap together on a GPU, see scree_overlap_num_lanes(); 0: one
+    scree_device *device;       ///< where all arrays lie, NULL: the CPU
+    scree_overlap_room room;    ///< of an overlap, to begin with; 0: chosen
+    scree_work_classes classes; ///< of the pairs of meshes on a GPU, by their shapes; on the CPU one is enough
     scree_overlap_options options;
     scree_separation_use separation;
     scree_narrow_phase_counts counts;           ///< of the last search

@@ -16,14 +16,9 @@ typedef struct scree_overlap_pairs_args
     int32_t max_results;
     scree_overlap_options options;
     int64_t num_at_once; ///< pairs that are taken together
-    int32_t num_lanes;   ///< of a team on a GPU: see scree_overlap_num_lanes(); no result depends on it
+    int32_t work_class;  ///< of the pairs that are taken
+    int32_t num_lanes;   ///< of a team on a GPU: see scree_work_num_lanes(); no result depends on it
 } scree_overlap_pairs_args;
-
-/// Lanes for pairs of shapes with so many triangles: few where few are kept, so that more pairs are under way at once.
-SCREE_FN int32_t scree_overlap_num_lanes(int32_t num_triangles)
-{
-    return num_triangles < SCREE_LARGE_SHAPE ? 8 : num_triangles < 512 ? 16 : 32;
-}
 
 /// Entry m of the batch, worked on by index i of the launch. Without enough room nothing but the lack is noted: the
 /// host makes room and launches again.
@@ -55,17 +50,19 @@ SCREE_FN void scree_overlap_of_pair(const scree_overlap_pairs_args *a, const scr
 SCREE_FN void scree_overlap_take_pairs(const scree_overlap_pairs_args *a, const scree_team *team, int64_t i,
                                        bool may_separate)
 {
-    const int64_t num_active = a->meshes.tally->num_active;
+    const int64_t num_active = a->meshes.tally->num_active[a->work_class];
+    int64_t *num_taken = a->meshes.tally->num_taken + a->work_class;
+    const int32_t *active = scree_active_of_class(&a->meshes, a->work_class);
     for (;;)
     {
         // the one who leads takes for all; batches have indices of 32 bits
         int32_t taken = 0;
-        if (scree_team_leads(team)) taken = (int32_t)scree_atomic_count(&a->meshes.tally->num_taken, a->num_at_once);
+        if (scree_team_leads(team)) taken = (int32_t)scree_atomic_count(num_taken, a->num_at_once);
         const int64_t begin = scree_team_sum(team, taken);
         if (begin >= num_active) return;
         for (int64_t k = begin; k < begin + a->num_at_once && k < num_active; ++k)
         {
-            scree_overlap_of_pair(a, team, i, a->meshes.active[k], may_separate);
+            scree_overlap_of_pair(a, team, i, active[k], may_separate);
             scree_team_sync(team);
         }
     }

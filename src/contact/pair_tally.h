@@ -4,14 +4,15 @@
 #ifndef SCREE_PAIR_TALLY_H
 #define SCREE_PAIR_TALLY_H
 
+#include "contact/narrow_phase.h"
 #include "contact/overlap_parts.h"
 #include "core/atomic_kernel.h"
 
 /// Zeroed before a search.
 typedef struct scree_pair_tally
 {
-    int64_t num_active;                            ///< pairs of meshes that are not known to be apart
-    int64_t num_taken;                             ///< of these, taken up by somebody
+    int64_t num_active[SCREE_NUM_WORK_CLASSES];    ///< pairs of meshes that are not known to be apart
+    int64_t num_taken[SCREE_NUM_WORK_CLASSES];     ///< of these, taken up by somebody
     int64_t num_lacking[SCREE_LACK_CROSSINGS + 1]; ///< overlaps that were not computed for lack of room, by what lacked
     int64_t num_kept;                              ///< overlaps that touch, with or without room to keep them
     scree_maximum most_results;                    ///< of one pair of meshes, if there was no room for them

@@ -22,12 +22,31 @@ enum
 
 // ---- memory
 
+/// Classes that pairs of its shapes may be of.
+static scree_work_classes classes_of(const scree_simulation *here)
+{
+    int32_t least = INT32_MAX / 2, most = 0;
+    for (int32_t k = 0; k < here->num_shapes; ++k)
+    {
+        const scree_shape_view *shape = here->shape_views + k;
+        if (shape->kind != SCREE_KIND_MESH) continue;
+        if (shape->num_triangles < least) least = shape->num_triangles;
+        if (shape->num_triangles > most) most = shape->num_triangles;
+    }
+    const scree_work_classes none = {0, 0};
+    const scree_work_classes classes = {scree_work_class(2 * least), scree_work_class(2 * most)};
+    return most > 0 ? classes : none;
+}
+
 scree_device_memory scree_device_memory_of(const scree_simulation *simulation)
 {
     const scree_plan_bytes bytes = scree_simulation_plan_bytes(simulation);
+    // a list of active pairs for each class after the first
+    const scree_work_classes classes = classes_of(simulation);
+    const size_t lists = (size_t)(classes.last - classes.first) * sizeof(int32_t);
     scree_device_memory memory;
     memory.per_particle = (int64_t)(bytes.state + bytes.search);
-    memory.per_pair = (int64_t)(SLACK * (double)scree_plan_largest_pair(&bytes));
+    memory.per_pair = (int64_t)(SLACK * (double)((size_t)scree_plan_largest_pair(&bytes) + lists));
     memory.per_contact = (int64_t)(SLACK * (double)bytes.contact);
     const int64_t num = simulation->particles.num_particles, num_pairs = simulation->counters.num_pairs,
                   num_contacts = simulation->counters.num_contacts;
@@ -132,7 +151,7 @@ static scree_status move(scree_simulation *there, scree_simulation *here)
     there->narrow_phase.options = here->narrow_phase.options;
     there->narrow_phase.separation = here->narrow_phase.separation;
     there->narrow_phase.room = choose_room(largest_shape(here));
-    there->narrow_phase.num_lanes = scree_overlap_num_lanes(largest_shape(here));
+    there->narrow_phase.classes = classes_of(here);
     scree_status status = scree_particles_copy(device, &there->particles, &here->particles);
     if (status == SCREE_OK) status = copy_shapes(there, here);
     if (status == SCREE_OK) status = copy_buffers(there, here);

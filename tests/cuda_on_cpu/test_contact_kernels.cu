@@ -114,7 +114,9 @@ static void find_overlaps_on(side &where, bool separates)
 
     args.batch = kinds.batch;
     args.memory = where.zeros<scree_pair_memory>(num);
-    args.active = where.make<int32_t>(num);
+    args.classes = {0, 2};
+    args.max_active = num;
+    args.active = where.make<int32_t>(3 * num);
     args.max_kept = num;
     args.kept = where.make<scree_kept_overlap>(num);
     args.kept_levers = where.make<scree_kept_lever>(num);
@@ -139,12 +141,18 @@ static void find_overlaps_on(side &where, bool separates)
     overlaps.max_results = separates ? 4 : 1;
     overlaps.results = where.make<scree_overlap_result>(num_slices * overlaps.max_results);
     overlaps.num_at_once = 3;
-    overlaps.num_lanes = 8;
-    if (separates) LAUNCH_ON(where, scree_overlap_patches, overlaps, num_slices);
-    else LAUNCH_ON(where, scree_overlap_pairs, overlaps, num_slices);
+    for (int32_t work_class = 0; work_class < 3; ++work_class)
+    {
+        overlaps.work_class = work_class;
+        overlaps.num_lanes = scree_work_num_lanes(work_class);
+        if (separates) LAUNCH_ON(where, scree_overlap_patches, overlaps, num_slices);
+        else LAUNCH_ON(where, scree_overlap_pairs, overlaps, num_slices);
+    }
     where.keep(args.memory, num);
     const scree_pair_tally tally = where.read(args.tally, 1)[0];
-    SCREE_CHECK(tally.num_active > 20 && tally.num_active < num && tally.num_lacking[SCREE_LACK_PIECES] == 0);
+    const int64_t num_active = tally.num_active[0] + tally.num_active[1] + tally.num_active[2];
+    SCREE_CHECK(num_active > 20 && num_active < num && tally.num_lacking[SCREE_LACK_PIECES] == 0);
+    SCREE_CHECK(tally.num_active[0] > 0);
 
     std::vector<int64_t> first(1, 0);
     for (const int64_t num_contacts : where.read(args.list.first_of_pair, num_pairs))

@@ -182,8 +182,11 @@ static void check_same(scree_simulation *here, scree_simulation *there)
     SCREE_CHECK(are_same(p->collisions.normal, q->collisions.normal, n));
 }
 
-/// All steps of a scene on both sides.
-static void check_scene(const std::string &text, int32_t block, int64_t least_contacts)
+/// Classes of pairs of meshes in the last scene that was checked.
+static scree_work_classes classes;
+
+/// All steps of a scene on both sides. `work_class`: all pairs of meshes go to teams of its size; -1: each to its own.
+static void check_scene(const std::string &text, int32_t block, int64_t least_contacts, int32_t work_class = -1)
 {
     scene_run here, there;
     scene_run_start(&here, text.c_str());
@@ -191,6 +194,8 @@ static void check_scene(const std::string &text, int32_t block, int64_t least_co
     if (here.simulation == nullptr || there.simulation == nullptr) return;
     scree_device *device = open_device(block);
     move(there.simulation, device);
+    classes = there.simulation->there->narrow_phase.classes;
+    if (work_class >= 0) there.simulation->there->narrow_phase.classes = {work_class, work_class};
     check_same(here.simulation, there.simulation);
     int64_t most_contacts = 0;
     for (int part = 0; part < 4; ++part)
@@ -211,7 +216,16 @@ static void check_scene(const std::string &text, int32_t block, int64_t least_co
 }
 
 static void test_spheres() { check_scene(spheres(), 128, 40); }
-static void test_polyhedra() { check_scene(polyhedra(), 32, 12); }
+static void test_polyhedra()
+{
+    check_scene(polyhedra(), 32, 12);
+    SCREE_CHECK(classes.first == 0 && classes.last == SCREE_NUM_WORK_CLASSES - 1);
+}
+static void test_teams_of_one_size()
+{
+    for (int32_t work_class = 0; work_class < SCREE_NUM_WORK_CLASSES; work_class += 2)
+        check_scene(polyhedra(), 128, 12, work_class);
+}
 static void test_mixed() { check_scene(mixed(), 50, 20); }
 static void test_patches() { check_scene(patches(), 128, 2); }
 
@@ -292,6 +306,7 @@ int main()
     if (is_without_device()) return SKIPPED;
     SCREE_RUN(test_spheres);
     SCREE_RUN(test_polyhedra);
+    SCREE_RUN(test_teams_of_one_size);
     SCREE_RUN(test_mixed);
     SCREE_RUN(test_patches);
     SCREE_RUN(test_sides_change_at_checkpoints);

@@ -12,22 +12,26 @@
 #define SCREE_DECLARE_LAUNCH_CUDA(name) \
     extern "C" void name##_launch_cuda(scree_device *device, name##_args args, int64_t num);
 
-#define SCREE_DEFINE_LAUNCH(name)                                                                         \
-    static __global__ void __launch_bounds__(SCREE_CUDA_BLOCK) name##_grid(name##_args args, int64_t num) \
-    {                                                                                                     \
-        const int64_t i = (int64_t)blockIdx.x * blockDim.x + threadIdx.x;                                 \
-        if (i < num) name##_at(args, i);                                                                  \
-    }                                                                                                     \
-    SCREE_DECLARE_LAUNCH_CUDA(name)                                                                       \
-    void name##_launch_cuda(scree_device *device, name##_args args, int64_t num)                          \
-    {                                                                                                     \
-        if (num <= 0 || device->error != cudaSuccess) return;                                             \
-        cudaLaunchConfig_t config = {};                                                                   \
-        config.gridDim = dim3((unsigned)((num + device->block - 1) / device->block));                     \
-        config.blockDim = dim3((unsigned)device->block);                                                  \
-        config.stream = device->stream;                                                                   \
-        scree_cuda_note(device, cudaLaunchKernelEx(&config, name##_grid, args, num));                     \
+#define SCREE_DEFINE_LAUNCH_BOUNDED(name, ...)                                                       \
+    static __global__ void __launch_bounds__(__VA_ARGS__) name##_grid(name##_args args, int64_t num) \
+    {                                                                                                \
+        const int64_t i = (int64_t)blockIdx.x * blockDim.x + threadIdx.x;                            \
+        if (i < num) name##_at(args, i);                                                             \
+    }                                                                                                \
+    SCREE_DECLARE_LAUNCH_CUDA(name)                                                                  \
+    void name##_launch_cuda(scree_device *device, name##_args args, int64_t num)                     \
+    {                                                                                                \
+        if (num <= 0 || device->error != cudaSuccess) return;                                        \
+        cudaLaunchConfig_t config = {};                                                              \
+        config.gridDim = dim3((unsigned)((num + device->block - 1) / device->block));                \
+        config.blockDim = dim3((unsigned)device->block);                                             \
+        config.stream = device->stream;                                                              \
+        scree_cuda_note(device, cudaLaunchKernelEx(&config, name##_grid, args, num));                \
     }
+
+#define SCREE_DEFINE_LAUNCH(name) SCREE_DEFINE_LAUNCH_BOUNDED(name, SCREE_CUDA_BLOCK)
+/// For a body that needs all the registers there are: one block on a multiprocessor is enough.
+#define SCREE_DEFINE_LAUNCH_WIDE(name) SCREE_DEFINE_LAUNCH_BOUNDED(name, SCREE_CUDA_BLOCK, 1)
 
 /// The same for a body `name_team_at(args, team, i)` that a team of args.num_lanes threads works on, 8, 16 or 32 (or
 /// any power of two up to it): as many teams as fit side by side into a warp. Blocks are whole warps. One

@@ -23,7 +23,6 @@ REASONS = {
     "scree_mesh_gap": "two triangles and the relative pose are more than 168 registers; a pair comes here only when its last gap is used up",
     "scree_particle_pairs": "32 keys wait in a batch, so that one atomic serves them all; runs at neighbour searches only",
     "scree_wall_pairs": "as scree_particle_pairs",
-    "scree_sphere_mesh_count": "for 12.0 the compiler stops at 128 registers: some values of the walk over the mesh's tree wait",
     "scree_overlap_pairs": "a whole overlap by a team of lanes, with all registers there are: one of them waits while two triangles are "
     "decided side by side by the hierarchy, which is rare",
     "scree_overlap_patches": "as scree_overlap_pairs; telling patches apart, by one lane, sums over the edges of each tree of corners anew; "

@@ -95,7 +95,7 @@ class Study:
         self.output = ROOT / "runs" / "quick" / name if QUICK else self.folder
         self.runs = self.output / "runs" if QUICK else ROOT / "runs" / name
         self.results = self.output / "results.json"
-        self.ensembles, self.kept_files = [], []
+        self.ensembles, self.kept_files, self.is_stopped = [], [], False
 
     def ensemble(self, scene, name, varied=(), settings=(), program=PROGRAM):
         """The runs of a scene in a folder of this study, one thread each; see tools/ensemble.py."""
@@ -104,6 +104,8 @@ class Study:
 
     def run(self, scene, name, settings=(), program=PROGRAM):
         """Runs a scene if that is not done; the member of an ensemble of one."""
+        if self.is_stopped:
+            raise SystemExit("stopped")
         print(f"+ scree run {name}", flush=True)
         ensemble = self.ensemble(scene, name, settings=settings, program=program)
         self.expect(ensemble.run(jobs=1))
@@ -167,7 +169,9 @@ class Study:
 
     def stop(self, *_):
         """For SIGTERM, which the runs do not get by themselves."""
+        self.is_stopped = True
         for ensemble in self.ensembles:
+            ensemble.is_stopped = True
             for process in list(ensemble.running):
                 process.terminate()
         raise KeyboardInterrupt

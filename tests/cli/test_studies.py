@@ -108,6 +108,9 @@ def test_a_killed_study_goes_on(tree, how):
         time.sleep(0.01)
     process.send_signal(how)
     process.wait(timeout=60)
+    if how == signal.SIGTERM:
+        outcomes = [json.loads(path.read_text())["outcome"] for path in runs.glob("seed */only/summary.json")]
+        assert "finished" not in outcomes, "runs went on after the signal"
     assert (tree / "validation/good/README.md").read_text() == "before"
     again = studies(tree, "good")
     assert again.returncode == 0, again.stderr

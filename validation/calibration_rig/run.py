@@ -22,7 +22,7 @@ STUDY = Study(__file__)
 PROPORTIONS = {"count": 90, "scale": 0.58, "depth": 0.044, "opening": 0.3, "end": 1.1, "step": "auto"}
 TRIANGLES = (10, 20, 40, 60, 100, 150)
 FRICTION = (0.1, 0.2, 0.6, 0.8)
-SEEDS, FEW_SEEDS, SPRING_SEEDS = 11, 4, 3
+SEEDS, FEW_SEEDS, SPRING_SEEDS = 11, 3, 2
 if QUICK:
     PROPORTIONS |= {"count": 25, "end": 0.9}
     TRIANGLES, FRICTION = (10, 40, 150), (0.1, 0.8)
@@ -142,8 +142,6 @@ def scatter(ax, results, named, column, unit, colour="C0"):
     means = []
     for x, name in named:
         values = unit * of_case(results, name, column)
-        if not len(values):
-            continue
         ax.plot([x] * len(values), values, f"{colour}.", ms=4, alpha=0.6)
         error = values.std(ddof=1) / math.sqrt(len(values)) if len(values) > 1 else 0
         means.append((x, values.mean(), error))
@@ -152,6 +150,7 @@ def scatter(ax, results, named, column, unit, colour="C0"):
 
 
 def plot_pair(results, name, named, label, log):
+    named = [(x, case) for x, case in named if rows_of(results, case)]
     figure, axes = plt.subplots(1, 2, figsize=(11, 4), layout="constrained")
     for ax, (column, text, unit) in zip(axes, COLUMNS, strict=True):
         scatter(ax, results, named, column, unit)
@@ -176,7 +175,8 @@ def plot_spring(results):
     axes[0].set(ylabel="kinetic energy [J]")
     axes[1].set(ylabel="mean height of the rocks [mm]", xlim=(after, None), ylim=(0, 30))
     axes[2].set(ylabel="angle of repose [degrees]", ylim=(0, None))
-    axes[0].legend()
+    if axes[0].lines:
+        axes[0].legend()
     for ax in axes:
         ax.set_xlabel("time [s]")
         ax.grid(alpha=0.3)

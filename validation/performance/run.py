@@ -54,14 +54,14 @@ def compute():
     results["precision"] = [[double["cases"][0], float_["cases"][0]] for double, float_ in pairs]
     results["skin"] = kept("skin", lambda: {skin: scene(f"solver.skin={skin}", parts=1)["cases"][0] for skin in SKINS})
     results["rig"] = kept("rig", lambda: bench("rig", "--steps", 2500 if QUICK else 14000, "--particles", 50))
-    largest = 10000 if QUICK else 100000
-    results["scaling"] = kept("scaling", lambda: bench("scaling", "--particles", largest, "--repetitions", 3, "--steps", 5,
-                                                       "--search-every", 5, "--threads", 2))
+    largest = 10000 if QUICK else 1000000
+    results["scaling"] = kept("scaling", lambda: bench("scaling", "--particles", largest, "--repetitions", 3, "--steps", 4,
+                                                       "--search-every", 4, "--threads", 2))
     # one process for each, for the peak is that of the process
     sizes = [3000, 10000] if QUICK else [10000, 100000, 1000000]
-    results["memory"] = kept("memory", lambda: [
-        bench("packing", "--shape", "schoenhardt", "--particles", n, "--steps", 2, "--repetitions", 1, "--search-every", 2)["cases"][0]
-        for n in sizes])
+    few = ["--shape", "schoenhardt", "--steps", 2, "--repetitions", 1, "--search-every", 2]
+    results["memory"] = kept("memory", lambda: [bench("packing", "--particles", n, *few)["cases"][0] for n in sizes])
+    results["memory_single"] = kept("memory_single", lambda: bench("packing", "--particles", sizes[-1], *few, **single)["cases"][0])
     return results
 
 
@@ -167,9 +167,11 @@ def skin_table(results):
 def precision_table(results):
     rows = [[double["name"], f"{double['core_us_per_contact']:.2f}", f"{single['core_us_per_contact']:.2f}",
              f"{single['core_us_per_contact'] / double['core_us_per_contact']:.2f}",
-             f"{double['bytes']['per_contact']}, {single['bytes']['per_contact']}"]
+             f"{double['contacts_per_particle']:.2f}, {single['contacts_per_particle']:.2f}",
+             f"{single['core_ns_per_particle'] / double['core_ns_per_particle']:.2f}", f"{double['bytes']['per_contact']}, {single['bytes']['per_contact']}"]
             for double, single in results["precision"]]
-    return table(["bed", "double [µs]", "single [µs]", "ratio", "bytes of a contact"], rows)
+    return table(["bed", "double [µs]", "single [µs]", "ratio", "touching pairs of a body", "ratio for a body",
+                  "bytes of a contact"], rows)
 
 
 def memory_table(results):
@@ -179,7 +181,9 @@ def memory_table(results):
     per = results["memory"][-1]["bytes"]
     return table(["particles", "candidates", "touching pairs", "peak [GB]", "bytes per particle"], rows) + (
         f"\n\nBy the plan {per['per_particle']} bytes for a particle, {per['per_pair']} for a candidate pair, "
-        f"{per['per_contact']} for a contact, with history.")
+        f"{per['per_contact']} for a contact, with history. In single precision {results['memory_single']['particles']} "
+        f"bodies with {results['memory_single']['contacts']} touching pairs take "
+        f"{results['memory_single']['bytes']['peak_resident'] / 1e9:.2f} GB.")
 
 
 def threads_text(results):

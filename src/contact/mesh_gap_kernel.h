@@ -60,9 +60,21 @@ SCREE_FN scree_real scree_sides_squared(scree_vec3 p, scree_vec3 d, const scree_
     return scree_min(least, scree_segments_squared(p, d, t->c, scree_vec3_sub(t->a, t->c)));
 }
 
+/// Are all corners of u on one side of the plane of t, and farther from it than the root of `least`?
+SCREE_FN bool scree_is_beyond_plane(const scree_gap_triangle *t, const scree_gap_triangle *u, scree_real least)
+{
+    const scree_vec3 normal = scree_vec3_cross(scree_vec3_sub(t->b, t->a), scree_vec3_sub(t->c, t->a));
+    const scree_real a = scree_vec3_dot(normal, scree_vec3_sub(u->a, t->a));
+    const scree_real b = scree_vec3_dot(normal, scree_vec3_sub(u->b, t->a));
+    const scree_real c = scree_vec3_dot(normal, scree_vec3_sub(u->c, t->a));
+    const scree_real nearest = scree_max(scree_min(a, scree_min(b, c)), -scree_max(a, scree_max(b, c)));
+    return nearest > 0 && nearest * nearest > least * scree_vec3_dot(normal, normal);
+}
+
 /// The least of `least` and the squared distance of two triangles that do not meet.
 SCREE_FN scree_real scree_triangles_squared(const scree_gap_triangle *t, const scree_gap_triangle *u, scree_real least)
 {
+    if (scree_is_beyond_plane(t, u, least) || scree_is_beyond_plane(u, t, least)) return least;
     least = scree_sides_squared(t->a, scree_vec3_sub(t->b, t->a), u, least);
     least = scree_sides_squared(t->b, scree_vec3_sub(t->c, t->b), u, least);
     least = scree_sides_squared(t->c, scree_vec3_sub(t->a, t->c), u, least);
@@ -115,22 +127,26 @@ SCREE_FN scree_real scree_triangle_to_mesh_squared(const scree_shape_view *mesh,
 }
 
 /// Gap [m] of two posed meshes without a common point: no more than their distance, rounding included, and no more than
-/// SCREE_GAP_REACH lets it see; 0 or less if they are too near to tell. `large` has the tree that is walked.
+/// SCREE_GAP_REACH lets it see; 0 or less if it is below `useful` [m] or they are too near to tell. `large` has the
+/// tree that is walked.
 SCREE_FN scree_real scree_mesh_gap(const scree_shape_view *large, const scree_pose *large_pose,
-                                   const scree_shape_view *small, const scree_pose *small_pose)
+                                   const scree_shape_view *small, const scree_pose *small_pose, scree_real useful)
 {
     const scree_relative_pose pose = scree_relative_pose_make(large_pose, small_pose);
     const scree_real ratio = small_pose->scale / large_pose->scale;
     const scree_real reach = scree_min(large->bounding_radius, small->bounding_radius * ratio) * SCREE_GAP_REACH;
     scree_real least = reach * reach;
+    const scree_real too_near = useful / large_pose->scale * (useful / large_pose->scale);
     for (int32_t k = 0; k < small->num_triangles; ++k)
     {
+        if (least < too_near) return 0;
         scree_gap_triangle u = scree_gap_triangle_of(small, k);
         u.a = scree_affine(&pose.rotation, u.a, pose.translation);
         u.b = scree_affine(&pose.rotation, u.b, pose.translation);
         u.c = scree_affine(&pose.rotation, u.c, pose.translation);
         least = scree_triangle_to_mesh_squared(large, &u, least);
     }
+    if (least < too_near) return 0;
     const scree_real size =
         scree_vec3_length(pose.translation) + large->bounding_radius + small->bounding_radius * ratio;
     return (scree_sqrt(least) - 256 * SCREE_REAL_EPSILON * size) * large_pose->scale;

@@ -51,6 +51,12 @@ typedef struct scree_mesh_pairs_args
     scree_separation_use use;
 } scree_mesh_pairs_args;
 
+/// A gap costs several looks at its pair. So it must last for some steps to be kept, and is looked for right after a
+/// search of candidates, and then only in every eighth step, another one for each pair: bodies that flow past each
+/// other use up one gap after the other.
+#define SCREE_GAP_LASTS 4
+#define SCREE_GAP_EVERY 8
+
 typedef scree_mesh_pairs_args scree_mesh_apart_args;
 typedef scree_mesh_pairs_args scree_mesh_gap_args;
 typedef scree_mesh_pairs_args scree_mesh_write_args;
@@ -158,15 +164,18 @@ SCREE_FN void scree_mesh_pair_note(const scree_mesh_pairs_args *a, int32_t m, co
 /// so.
 SCREE_FN void scree_mesh_gap_at(scree_mesh_gap_args a, int64_t m)
 {
-    if (a.memory[m].apart_until != 0) return;
+    const int64_t num_steps = a.bodies.num_steps;
+    if (a.memory[m].apart_until != 0 || (num_steps > 0 && (num_steps + m) % SCREE_GAP_EVERY != 0)) return;
     const scree_candidate_pair pair = a.pairs[a.batch[m]];
     const scree_shape_view *shape_i = a.bodies.shapes + a.bodies.shape[pair.i];
     const scree_shape_view *shape_j = a.bodies.shapes + a.bodies.shape[pair.j];
     const scree_pose *pose_i = a.bodies.pose + pair.i, *pose_j = a.bodies.pose + pair.j;
     const bool is_larger = shape_i->num_triangles > shape_j->num_triangles;
-    const scree_real gap =
-        is_larger ? scree_mesh_gap(shape_i, pose_i, shape_j, pose_j) : scree_mesh_gap(shape_j, pose_j, shape_i, pose_i);
-    if (gap > 0) a.memory[m].apart_until = scree_apart_until(a.bodies.travel[pair.i] + a.bodies.travel[pair.j], gap);
+    const scree_real travelled = a.bodies.travel[pair.i] + a.bodies.travel[pair.j];
+    const scree_real useful = num_steps > 0 ? travelled / (scree_real)num_steps * SCREE_GAP_LASTS : 0;
+    const scree_real gap = is_larger ? scree_mesh_gap(shape_i, pose_i, shape_j, pose_j, useful)
+                                     : scree_mesh_gap(shape_j, pose_j, shape_i, pose_i, useful);
+    if (gap > 0) a.memory[m].apart_until = scree_apart_until(travelled, gap);
 }
 
 /// Touching results of entry m to the list.

@@ -20,7 +20,8 @@ typedef struct scree_bodies
     const scree_pose *pose;         ///< (num_bodies)
     const scree_real *travel;       ///< [m] (num_bodies) bound of the way of any of its points since the last search
     int64_t num_bodies;
-    scree_real reach; ///< [m] two bodies come closer by no more than this until pairs are forgotten; 0: not known
+    int64_t num_steps; ///< since the last search, in which the travels were made
+    scree_real reach;  ///< [m] two bodies come closer by no more than this until pairs are forgotten; 0: not known
 } scree_bodies;
 
 /// Work that is avoided for pairs of meshes that do not touch. All false: every pair goes to the overlap.

@@ -54,6 +54,7 @@ scree_status scree_update_contacts(scree_simulation *simulation)
     bodies.pose = b->pose;
     bodies.travel = b->travel;
     bodies.num_bodies = simulation->particles.num_particles + simulation->num_walls;
+    bodies.num_steps = simulation->step - b->searched_step;
     // each particle stays within its skin, together with the walls
     bodies.reach = simulation->scene->solver.reuse_pairs ? (b->has_travel ? 2 : 1) * b->skin : 0;
     scree_status status = scree_narrow_phase_find(&simulation->narrow_phase, &bodies, broad_phase->pairs,

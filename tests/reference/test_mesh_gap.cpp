@@ -41,9 +41,9 @@ double distance(const Mesh &a, const Mesh &b)
     return std::sqrt(least);
 }
 
-double gap(const Body &large, const Body &small)
+double gap(const Body &large, const Body &small, double useful)
 {
-    return (double)scree_mesh_gap(large.view(), large.pose(), small.view(), small.pose());
+    return (double)scree_mesh_gap(large.view(), large.pose(), small.view(), small.pose(), (scree_real)useful);
 }
 
 /// Both orders, against the distance of the bodies as they lie in the world.
@@ -58,11 +58,15 @@ void check(const Mesh &local_a, const Placement &at_a, const Mesh &local_b, cons
     const double seen = std::min(exact, (double)SCREE_GAP_REACH * std::min(radius_a, radius_b));
     // positions are off by eps times their own size in the reference's world, which scree does not go through
     const double world = 8 * epsilon * (norm(at_a.position) + norm(at_b.position));
-    for (const double found : {gap(body_a, body_b), gap(body_b, body_a)})
+    for (const double found : {gap(body_a, body_b, 0), gap(body_b, body_a, 0)})
     {
         SCREE_CHECK(found <= seen + world);
         SCREE_CHECK(found >= seen - 1024 * epsilon * size - world);
     }
+    // what would last too shortly is not told; neither is it told wrongly
+    const double rounding = 1024 * epsilon * size + world;
+    SCREE_CHECK(gap(body_a, body_b, seen + rounding) <= 0);
+    SCREE_CHECK(gap(body_a, body_b, std::max(0.0, seen - rounding)) == gap(body_a, body_b, 0));
 }
 
 void test_side_by_side(Random &random)

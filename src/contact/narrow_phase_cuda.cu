@@ -5,5 +5,5 @@
 SCREE_DEFINE_LAUNCH(scree_pair_flag)
 SCREE_DEFINE_LAUNCH(scree_pair_scatter)
 SCREE_DEFINE_LAUNCH(scree_mesh_apart)
-SCREE_DEFINE_LAUNCH(scree_mesh_gap)
+SCREE_DEFINE_LAUNCH_WIDE(scree_mesh_gap)
 SCREE_DEFINE_LAUNCH(scree_mesh_write)

@@ -1,5 +1,5 @@
 # Thin face on the CMake presets: every target works in a fresh clone.
-.PHONY: help setup build test demo studies format clean
+.PHONY: help setup program build test demo studies format clean
 .DEFAULT_GOAL := help
 
 help:
@@ -13,6 +13,11 @@ help:
 setup:
 	@tools/setup
 
+# what runs scenes, without tests
+program: setup
+	@cmake --preset release --log-level=WARNING
+	@cmake --build --preset release --target scree_program
+
 build: setup
 	@cmake --preset release --log-level=WARNING
 	@cmake --build --preset release
@@ -20,10 +25,10 @@ build: setup
 test: setup
 	@tests/run_all
 
-demo: build
+demo: program
 	@tools/demo
 
-studies: build
+studies: program
 	@tools/studies $(STUDY)
 
 format:

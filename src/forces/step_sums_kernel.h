@@ -9,17 +9,6 @@
 /// Sums that are added up by one index.
 #define SCREE_SUM_FAN_IN 256
 
-SCREE_FN scree_work_sums scree_work_sums_zero(void)
-{
-    scree_work_sums sums;
-    sums.damping = 0;
-    sums.friction = 0;
-    sums.hysteresis = 0;
-    sums.input = 0;
-    sums.smallest_step_squared = SCREE_REAL_MAX;
-    return sums;
-}
-
 typedef struct scree_work_reduce_args
 {
     const scree_work_sums *parts; ///< (num_parts)
@@ -28,22 +17,23 @@ typedef struct scree_work_reduce_args
 } scree_work_reduce_args;
 
 /// Parts k SCREE_SUM_FAN_IN and on.
+SCREE_FN void scree_work_reduce_team_at(scree_work_reduce_args a, const scree_team *team, int64_t k)
+{
+    scree_work_block block;
+    scree_work_begin(&block);
+    const int64_t begin = k * SCREE_SUM_FAN_IN;
+    int64_t num = a.num_parts - begin;
+    if (num > SCREE_SUM_FAN_IN) num = SCREE_SUM_FAN_IN;
+    for (int64_t n = scree_team_lane(team); n < num; n += scree_team_size(team))
+        scree_work_add(&block, n, a.parts[begin + n]);
+    const scree_work_sums sums = scree_work_total(team, &block);
+    if (scree_team_leads(team)) a.sums[k] = sums;
+}
+
 SCREE_FN void scree_work_reduce_at(scree_work_reduce_args a, int64_t k)
 {
-    scree_work_sums sums = scree_work_sums_zero();
-    const int64_t begin = k * SCREE_SUM_FAN_IN;
-    int64_t end = begin + SCREE_SUM_FAN_IN;
-    if (end > a.num_parts) end = a.num_parts;
-    for (int64_t i = begin; i < end; ++i)
-    {
-        const scree_work_sums part = a.parts[i];
-        sums.damping += part.damping;
-        sums.friction += part.friction;
-        sums.hysteresis += part.hysteresis;
-        sums.input += part.input;
-        sums.smallest_step_squared = scree_min(sums.smallest_step_squared, part.smallest_step_squared);
-    }
-    a.sums[k] = sums;
+    const scree_team team = scree_team_alone();
+    scree_work_reduce_team_at(a, &team, k);
 }
 
 typedef struct scree_ended_args
@@ -57,19 +47,27 @@ typedef struct scree_ended_args
 
 /// Energy that ended contacts had stored: lost by the normal springs (hysteresis) and the tangential ones (friction).
 /// Block b of SCREE_WORK_BLOCK old contacts.
+SCREE_FN void scree_ended_team_at(scree_ended_args a, const scree_team *team, int64_t b)
+{
+    scree_work_block block;
+    scree_work_begin(&block);
+    const int64_t begin = b * SCREE_WORK_BLOCK;
+    int64_t num = a.num_old - begin;
+    if (num > SCREE_WORK_BLOCK) num = SCREE_WORK_BLOCK;
+    for (int64_t n = scree_team_lane(team); n < num; n += scree_team_size(team))
+    {
+        if (a.is_continued[begin + n]) continue;
+        scree_team_sum_add(&block.hysteresis, n, a.elastic_energy[begin + n]);
+        scree_team_sum_add(&block.friction, n, a.spring_energy[begin + n]);
+    }
+    const scree_work_sums sums = scree_work_total(team, &block);
+    if (scree_team_leads(team)) a.sums[b] = sums;
+}
+
 SCREE_FN void scree_ended_at(scree_ended_args a, int64_t b)
 {
-    scree_work_sums sums = scree_work_sums_zero();
-    const int64_t begin = b * SCREE_WORK_BLOCK;
-    int64_t end = begin + SCREE_WORK_BLOCK;
-    if (end > a.num_old) end = a.num_old;
-    for (int64_t o = begin; o < end; ++o)
-    {
-        if (a.is_continued[o]) continue;
-        sums.hysteresis += a.elastic_energy[o];
-        sums.friction += a.spring_energy[o];
-    }
-    a.sums[b] = sums;
+    const scree_team team = scree_team_alone();
+    scree_ended_team_at(a, &team, b);
 }
 
 typedef struct scree_wall_load_reduce_args
@@ -81,14 +79,23 @@ typedef struct scree_wall_load_reduce_args
 } scree_wall_load_reduce_args;
 
 /// Moving wall k % num_moving of sum k / num_moving.
-SCREE_FN void scree_wall_load_reduce_at(scree_wall_load_reduce_args a, int64_t k)
+SCREE_FN void scree_wall_load_reduce_team_at(scree_wall_load_reduce_args a, const scree_team *team, int64_t k)
 {
     const int64_t wall = k % a.num_moving, begin = k / a.num_moving * SCREE_SUM_FAN_IN;
-    int64_t end = begin + SCREE_SUM_FAN_IN;
-    if (end > a.num_parts) end = a.num_parts;
-    scree_real sum = 0;
-    for (int64_t i = begin; i < end; ++i) sum += a.parts[i * a.num_moving + wall];
-    a.sums[k] = sum;
+    int64_t num = a.num_parts - begin;
+    if (num > SCREE_SUM_FAN_IN) num = SCREE_SUM_FAN_IN;
+    scree_team_real_sum sum;
+    scree_team_sum_zero(&sum);
+    for (int64_t n = scree_team_lane(team); n < num; n += scree_team_size(team))
+        scree_team_sum_add(&sum, n, a.parts[(begin + n) * a.num_moving + wall]);
+    const scree_real total = scree_team_sum_total(team, &sum);
+    if (scree_team_leads(team)) a.sums[k] = total;
+}
+
+SCREE_FN void scree_wall_load_reduce_at(scree_wall_load_reduce_args a, int64_t k)
+{
+    const scree_team team = scree_team_alone();
+    scree_wall_load_reduce_team_at(a, &team, k);
 }
 
 typedef struct scree_indentations_args
@@ -99,14 +106,22 @@ typedef struct scree_indentations_args
 } scree_indentations_args;
 
 /// Block b of SCREE_WORK_BLOCK contacts.
-SCREE_FN void scree_indentations_at(scree_indentations_args a, int64_t b)
+SCREE_FN void scree_indentations_team_at(scree_indentations_args a, const scree_team *team, int64_t b)
 {
     const int64_t begin = b * SCREE_WORK_BLOCK;
-    int64_t end = begin + SCREE_WORK_BLOCK;
-    if (end > a.num_contacts) end = a.num_contacts;
+    int64_t num = a.num_contacts - begin;
+    if (num > SCREE_WORK_BLOCK) num = SCREE_WORK_BLOCK;
     scree_real largest = 0;
-    for (int64_t c = begin; c < end; ++c) largest = scree_max(largest, a.indentation[c]);
-    scree_atomic_max(a.largest, largest);
+    for (int64_t n = scree_team_lane(team); n < num; n += scree_team_size(team))
+        largest = scree_max(largest, a.indentation[begin + n]);
+    largest = scree_team_max(team, largest);
+    if (scree_team_leads(team)) scree_atomic_max(a.largest, largest);
+}
+
+SCREE_FN void scree_indentations_at(scree_indentations_args a, int64_t b)
+{
+    const scree_team team = scree_team_alone();
+    scree_indentations_team_at(a, &team, b);
 }
 
 #endif

@@ -1,6 +1,6 @@
 /// \file work_cpu.c
-/// Work of the contacts on the CPU. Those that act in points are worked on in groups of lanes (lanes.h), and then added
-/// up one by one, in their order.
+/// Work of the contacts on the CPU. Those that act in points are worked on in groups of lanes (lanes.h), and added
+/// to the lanes of their sums.
 #include "forces/forces.h"
 #include "forces/motion_lanes.h"
 
@@ -32,8 +32,7 @@ static void load_group(scree_work_group *restrict g, const scree_work_args *rest
     }
 }
 
-SCREE_LANES_FUNCTION static void work_of_lanes(scree_work_group *restrict g, const scree_work_args *restrict a,
-                                               int64_t first)
+static void work_of_lanes(scree_work_group *restrict g, const scree_work_args *restrict a, int64_t first)
 {
     load_group(g, a, first);
     const scree_real *elastic_force = a->contacts.elastic_force + first;
@@ -57,44 +56,57 @@ SCREE_LANES_FUNCTION static void work_of_lanes(scree_work_group *restrict g, con
     }
 }
 
-static void add_group(const scree_work_group *g, const scree_work_args *a, int64_t first, scree_work_sums *sums)
+/// Moving walls among the second bodies of a group work on the first ones.
+static void add_work_of_walls(const scree_work_group *g, const scree_work_args *a, int64_t begin, int64_t n,
+                              scree_work_block *block)
 {
-    bool has_walls = false;
-    // the smallest of the quotients is the quotient of the largest: rounding keeps their order
-    scree_real largest = 0;
     for (int l = 0; l < SCREE_LANES; ++l)
-    {
-        const scree_work_losses losses = {g->hysteresis[l], g->damping[l], g->friction[l], g->viscous[l]};
-        scree_work_add(losses, sums);
-        largest = scree_max(largest, g->inverse_step_squared[l]);
-        has_walls |= g->j.body[l] >= a->num_particles;
-    }
-    sums->smallest_step_squared = scree_min(sums->smallest_step_squared, 1 / largest);
-    for (int l = 0; l < SCREE_LANES && has_walls; ++l)
     {
         if (g->j.body[l] < a->num_particles) continue;
         const scree_vec3 point = scree_vec3_add(scree_lanes_get(&g->i.position, l), scree_lanes_get(&g->arm, l));
         const scree_vec3 arm_j = scree_vec3_sub(point, scree_lanes_get(&g->j.position, l));
-        sums->input += scree_work_of_wall(a, first + l, g->j.body[l], arm_j);
+        scree_team_sum_add(&block->input, n + l, scree_work_of_wall(a, begin + n + l, g->j.body[l], arm_j));
     }
+}
+
+/// Contacts n .. n + SCREE_LANES - 1 of the block that starts at contact `begin`. `largest` holds the largest inverse
+/// of a step's square so far.
+SCREE_LANES_FUNCTION static void add_group(const scree_work_args *restrict a, int64_t begin, int64_t n,
+                                           scree_work_block *restrict block, scree_real *restrict largest)
+{
+    scree_work_group g;
+    work_of_lanes(&g, a, begin + n);
+    scree_real *restrict hysteresis = block->hysteresis.lane + n % SCREE_SUM_LANES;
+    scree_real *restrict damping = block->damping.lane + n % SCREE_SUM_LANES;
+    scree_real *restrict friction = block->friction.lane + n % SCREE_SUM_LANES;
+    for (int l = 0; l < SCREE_LANES; ++l)
+    {
+        hysteresis[l] += g.hysteresis[l];
+        damping[l] += g.damping[l] + g.viscous[l];
+        friction[l] += g.friction[l];
+        largest[l] = scree_max(largest[l], g.inverse_step_squared[l]);
+    }
+    int32_t num_walls = 0;
+    for (int l = 0; l < SCREE_LANES; ++l) num_walls += g.j.body[l] >= a->num_particles;
+    if (num_walls > 0) add_work_of_walls(&g, a, begin, n, block);
 }
 
 /// Block b as scree_work_at() has it.
 static void work_of_block(const scree_work_args *a, int64_t b)
 {
-    scree_work_sums sums;
-    scree_work_begin(&sums);
-    int64_t c = b * SCREE_WORK_BLOCK;
-    const int64_t end =
-        c + SCREE_WORK_BLOCK < a->contacts.num_contacts ? c + SCREE_WORK_BLOCK : a->contacts.num_contacts;
-    scree_work_group g;
-    for (; c + SCREE_LANES <= end; c += SCREE_LANES)
-    {
-        work_of_lanes(&g, a, c);
-        add_group(&g, a, c, &sums);
-    }
-    for (; c < end; ++c) scree_work_of_contact(a, c, &sums);
-    a->sums[b] = sums;
+    scree_work_block block;
+    scree_work_begin(&block);
+    const int64_t begin = b * SCREE_WORK_BLOCK, rest = a->contacts.num_contacts - begin;
+    const int64_t num = rest < SCREE_WORK_BLOCK ? rest : SCREE_WORK_BLOCK;
+    int64_t n = 0;
+    scree_real largest[SCREE_LANES] = {0};
+    for (; n + SCREE_LANES <= num; n += SCREE_LANES) add_group(a, begin, n, &block, largest);
+    // the smallest of the quotients is the quotient of the largest: rounding keeps their order
+    for (int l = 0; l < SCREE_LANES && n > 0; ++l)
+        block.smallest_step_squared = scree_min(block.smallest_step_squared, 1 / largest[l]);
+    for (; n < num; ++n) scree_work_add(&block, n, scree_work_of_contact(a, begin + n));
+    const scree_team team = scree_team_alone();
+    a->sums[b] = scree_work_total(&team, &block);
 }
 
 void scree_work_launch(scree_work_args args, int64_t num)

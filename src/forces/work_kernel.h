@@ -6,9 +6,10 @@
 #ifndef SCREE_WORK_KERNEL_H
 #define SCREE_WORK_KERNEL_H
 
+#include "core/team_sum.h"
 #include "forces/contact_force_kernel.h"
 
-/// Contacts summed by one index; fixed, so that the sum does not depend on the number of threads.
+/// Contacts whose sum is made by one index.
 #define SCREE_WORK_BLOCK 256
 
 /// Sums over one block of contacts.
@@ -69,13 +70,42 @@ SCREE_FN scree_work_terms scree_work_terms_make(scree_vec3 n, scree_vec3 v, scre
     return terms;
 }
 
-SCREE_FN void scree_work_begin(scree_work_sums *sums)
+/// The sums of a block while they are made.
+typedef struct scree_work_block
 {
-    sums->damping = 0;
-    sums->friction = 0;
-    sums->hysteresis = 0;
-    sums->input = 0;
-    sums->smallest_step_squared = SCREE_REAL_MAX;
+    scree_team_real_sum damping, friction, hysteresis, input;
+    scree_real smallest_step_squared; ///< over all lanes of the thread
+} scree_work_block;
+
+SCREE_FN void scree_work_begin(scree_work_block *block)
+{
+    scree_team_sum_zero(&block->damping);
+    scree_team_sum_zero(&block->friction);
+    scree_team_sum_zero(&block->hysteresis);
+    scree_team_sum_zero(&block->input);
+    block->smallest_step_squared = SCREE_REAL_MAX;
+}
+
+/// Item n of the block.
+SCREE_FN void scree_work_add(scree_work_block *block, int64_t n, scree_work_sums one)
+{
+    scree_team_sum_add(&block->damping, n, one.damping);
+    scree_team_sum_add(&block->friction, n, one.friction);
+    scree_team_sum_add(&block->hysteresis, n, one.hysteresis);
+    scree_team_sum_add(&block->input, n, one.input);
+    block->smallest_step_squared = scree_min(block->smallest_step_squared, one.smallest_step_squared);
+}
+
+/// The whole block, to all threads of the team.
+SCREE_FN scree_work_sums scree_work_total(const scree_team *team, scree_work_block *block)
+{
+    scree_work_sums sums;
+    sums.damping = scree_team_sum_total(team, &block->damping);
+    sums.friction = scree_team_sum_total(team, &block->friction);
+    sums.hysteresis = scree_team_sum_total(team, &block->hysteresis);
+    sums.input = scree_team_sum_total(team, &block->input);
+    sums.smallest_step_squared = -scree_team_max(team, -block->smallest_step_squared);
+    return sums;
 }
 
 /// Where these terms go: what the springs of the contact do not take up is lost.
@@ -98,14 +128,6 @@ SCREE_FN scree_work_losses scree_work_losses_make(scree_work_terms terms, scree_
     return losses;
 }
 
-SCREE_FN void scree_work_add(scree_work_losses losses, scree_work_sums *sums)
-{
-    sums->hysteresis += losses.hysteresis;
-    sums->damping += losses.damping;
-    sums->friction += losses.friction;
-    sums->damping += losses.viscous;
-}
-
 /// A moving wall works on the particle: contact c with wall j.
 SCREE_FN scree_real scree_work_of_wall(const scree_work_args *a, int64_t c, int32_t j, scree_vec3 arm_j)
 {
@@ -116,8 +138,8 @@ SCREE_FN scree_real scree_work_of_wall(const scree_work_args *a, int64_t c, int3
     return (scree_vec3_dot(f, v_wall) + scree_vec3_dot(moment, wall->angular_velocity)) * a->time_step;
 }
 
-/// Adds contact c to the sums.
-SCREE_FN void scree_work_of_contact(const scree_work_args *a, int64_t c, scree_work_sums *sums)
+/// Contact c alone.
+SCREE_FN scree_work_sums scree_work_of_contact(const scree_work_args *a, int64_t c)
 {
     const scree_candidate_pair pair = a->contacts.bodies[c];
     const scree_vec3 arm = a->contacts.arm[c], n = a->contacts.normal[c];
@@ -136,31 +158,44 @@ SCREE_FN void scree_work_of_contact(const scree_work_args *a, int64_t c, scree_w
                               a->contacts.elastic_force[c], moment_power, a->time_step);
     const bool is_turning = !a->contacts.acts_in_points && a->contacts.is_turning[c];
     const bool is_friction = a->contacts.is_slipping[c] || is_turning;
-    scree_work_add(scree_work_losses_make(terms, a->contacts.elastic_work[c], a->contacts.spring_work[c], is_friction),
-                   sums);
+    const scree_work_losses losses =
+        scree_work_losses_make(terms, a->contacts.elastic_work[c], a->contacts.spring_work[c], is_friction);
 
     const scree_vec3 point = scree_vec3_add(a->bodies.pose[pair.i].position, arm);
     const scree_vec3 arm_j = scree_vec3_sub(point, a->bodies.pose[pair.j].position);
-    if (pair.j >= a->num_particles) sums->input += scree_work_of_wall(a, c, pair.j, arm_j);
+    scree_work_sums one;
+    one.hysteresis = losses.hysteresis;
+    one.damping = losses.damping + losses.viscous;
+    one.friction = losses.friction;
+    one.input = pair.j >= a->num_particles ? scree_work_of_wall(a, c, pair.j, arm_j) : 0;
 
     // the stiffer of the two counts
     const scree_real k_t = a->contacts.tangential_stiffness[c];
     const scree_real k_n = k_t / law->tangential_over_normal;
     const scree_real inverse_mass =
         scree_inverse_mass_at(a, pair.i, arm, n) + scree_inverse_mass_at(a, pair.j, arm_j, n);
-    sums->smallest_step_squared = scree_min(sums->smallest_step_squared, 1 / (inverse_mass * scree_max(k_n, k_t)));
+    one.smallest_step_squared = 1 / (inverse_mass * scree_max(k_n, k_t));
+    return one;
 }
 
 /// Block b of SCREE_WORK_BLOCK contacts.
+SCREE_FN void scree_work_team_at(scree_work_args a, const scree_team *team, int64_t b)
+{
+    scree_work_block block;
+    scree_work_begin(&block);
+    const int64_t begin = b * SCREE_WORK_BLOCK;
+    int64_t num = a.contacts.num_contacts - begin;
+    if (num > SCREE_WORK_BLOCK) num = SCREE_WORK_BLOCK;
+    for (int64_t n = scree_team_lane(team); n < num; n += scree_team_size(team))
+        scree_work_add(&block, n, scree_work_of_contact(&a, begin + n));
+    const scree_work_sums sums = scree_work_total(team, &block);
+    if (scree_team_leads(team)) a.sums[b] = sums;
+}
+
 SCREE_FN void scree_work_at(scree_work_args a, int64_t b)
 {
-    scree_work_sums sums;
-    scree_work_begin(&sums);
-    const int64_t begin = b * SCREE_WORK_BLOCK;
-    int64_t end = begin + SCREE_WORK_BLOCK;
-    if (end > a.contacts.num_contacts) end = a.contacts.num_contacts;
-    for (int64_t c = begin; c < end; ++c) scree_work_of_contact(&a, c, &sums);
-    a.sums[b] = sums;
+    const scree_team team = scree_team_alone();
+    scree_work_team_at(a, &team, b);
 }
 
 #endif

@@ -53,6 +53,7 @@ SCREE_FN void scree_wall_load_team_at(scree_wall_load_args a, const scree_team *
     {
         scree_team_real_sum sum;
         scree_team_sum_zero(&sum);
+        SCREE_TURN_BY_TURN
         for (int64_t n = scree_team_lane(team); n < num; n += scree_team_size(team))
         {
             const int32_t wall = a.contacts.bodies[begin + n].j - a.num_particles;

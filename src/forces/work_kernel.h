@@ -186,6 +186,7 @@ SCREE_FN void scree_work_team_at(scree_work_args a, const scree_team *team, int6
     const int64_t begin = b * SCREE_WORK_BLOCK;
     int64_t num = a.contacts.num_contacts - begin;
     if (num > SCREE_WORK_BLOCK) num = SCREE_WORK_BLOCK;
+    SCREE_TURN_BY_TURN
     for (int64_t n = scree_team_lane(team); n < num; n += scree_team_size(team))
         scree_work_add(&block, n, scree_work_of_contact(&a, begin + n));
     const scree_work_sums sums = scree_work_total(team, &block);

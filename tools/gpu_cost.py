@@ -18,7 +18,7 @@ PAGE = ROOT / "docs" / "theory" / "gpu_cost.md"
 
 # numbers of reals and of other bytes of each type
 TYPES = {"real": (1, 0), "vec3": (3, 0), "quat": (4, 0), "pose": (8, 0), "int32": (0, 4), "int64": (0, 8), "uint8": (0, 1),
-         "pair": (0, 8), "moving": (7, 8), "memory": (0, 16), "sphere": (4, 0)}
+         "pair": (0, 8), "moving": (7, 8), "memory": (0, 8), "sphere": (4, 0)}
 SECTOR = 32  # bytes, the least that a GPU moves
 
 # Kernels of the steady step of polyhedra, one launch each. `own`: arrays at the index itself, each byte once. `far`: arrays

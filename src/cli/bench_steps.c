@@ -46,7 +46,7 @@ static scree_status run_steps(scree_simulation *s, const scree_bench_request *re
     scree_status status = SCREE_OK;
     for (int64_t k = 0; k < num_steps && status == SCREE_OK; ++k)
     {
-        if (request->search_every > 0 && s->step % request->search_every == 0) there->buffers->has_pairs = false;
+        if (request->search_every > 0 && s->step % request->search_every == 0) there->buffers->is_search_asked = true;
         status = scree_simulation_step(s, report);
     }
     return status;

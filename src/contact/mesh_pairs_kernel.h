@@ -5,20 +5,9 @@
 #define SCREE_MESH_PAIRS_KERNEL_H
 
 #include "contact/mesh_gap_kernel.h"
-#include "contact/narrow_phase.h"
+#include "contact/pair_memory_kernel.h"
 #include "contact/pair_tally.h"
 #include "contact/separating_direction_kernel.h"
-
-/// What is remembered of a candidate pair from step to step. Most pairs of a bed do not touch, so this is what a pair
-/// costs in memory: single precision is enough for a direction that is tried first and for a bound that is rounded
-/// down.
-typedef struct scree_pair_memory
-{
-    float direction[3]; ///< that separated it last time, or zero
-    float apart_until;  ///< [m] sum of the travels of both bodies up to which it cannot touch; < 0: it touched
-} scree_pair_memory;
-
-#define SCREE_PAIR_TOUCHED (-1.0F)
 
 /// What the list takes of an overlap, until its place there is known.
 typedef struct scree_kept_overlap
@@ -86,12 +75,6 @@ SCREE_FN int32_t *scree_active_of_class(const scree_mesh_pairs_args *a, int32_t 
     return a->active + (work_class - a->classes.first) * a->max_active;
 }
 
-/// Bound of the travels for a pair with a gap: a hair less, for the rounding of the travels and of this number.
-SCREE_FN float scree_apart_until(scree_real travelled, scree_real gap)
-{
-    return (float)(travelled + gap * (scree_real)0.999) * (1 - 4 * FLT_EPSILON);
-}
-
 /// Is the pair known to be apart, or found to be so now? The answer is proven, never a guess.
 SCREE_FN bool scree_pair_is_apart(const scree_bodies *bodies, scree_candidate_pair pair, scree_pair_memory *memory,
                                   scree_separation_use use)
@@ -101,15 +84,11 @@ SCREE_FN bool scree_pair_is_apart(const scree_bodies *bodies, scree_candidate_pa
     if (use.bounds && travelled < (scree_real)memory->apart_until) return true;
     // contacts mostly last; the search would be in vain
     if (use.remembers && memory->apart_until < 0) return false;
-    const float *last = memory->direction;
-    scree_vec3 direction = scree_vec3_zero();
-    if (use.remembers) direction = scree_vec3_make((scree_real)last[0], (scree_real)last[1], (scree_real)last[2]);
+    scree_vec3 direction = use.remembers ? scree_unpack_direction(memory->direction) : scree_vec3_zero();
     const scree_real gap =
         scree_separation_search(bodies->shapes + bodies->shape[pair.i], bodies->pose + pair.i,
                                 bodies->shapes + bodies->shape[pair.j], bodies->pose + pair.j, &direction);
-    memory->direction[0] = (float)direction.x;
-    memory->direction[1] = (float)direction.y;
-    memory->direction[2] = (float)direction.z;
+    if (gap > 0) scree_pack_direction(direction, memory->direction);
     memory->apart_until = gap > 0 ? scree_apart_until(travelled, gap) : 0;
     return gap > 0;
 }

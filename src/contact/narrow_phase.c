@@ -31,10 +31,13 @@ struct scree_narrow_phase_buffers
     scree_kept_overlap *kept;      ///< (max_kept) of pairs that touch
     scree_kept_lever *kept_levers; ///< (max_kept) or NULL
     int64_t max_kept;
-    int32_t *first_kept;       ///< (num in batch)
-    int32_t *active;           ///< (num of classes, max_mesh_pairs)
-    scree_pair_memory *memory; ///< (num in batch)
+    int32_t *first_kept; ///< (num in batch); during a search of candidates the first body of each pair
+    int32_t *active;     ///< (num of classes, max_mesh_pairs); meanwhile the second body
     int64_t max_mesh_pairs;
+    scree_pair_memory *memory;     ///< (num in batch)
+    scree_pair_memory *old_memory; ///< (num_carried) of the pairs before the last search of candidates
+    int64_t max_memory, max_old_memory;
+    int64_t num_carried; ///< pairs whose memory the next batch takes over
 
     scree_sphere *spheres; ///< (max_bodies)
     int64_t max_bodies;
@@ -63,6 +66,7 @@ void scree_narrow_phase_destroy(scree_narrow_phase *narrow_phase)
         scree_device_free(device, b->first_kept);
         scree_device_free(device, b->active);
         scree_device_free(device, b->memory);
+        scree_device_free(device, b->old_memory);
         scree_device_free(device, b->spheres);
         scree_device_free(device, b->found);
         scree_device_free(device, b->start);
@@ -73,7 +77,29 @@ void scree_narrow_phase_destroy(scree_narrow_phase *narrow_phase)
 
 void scree_narrow_phase_forget(scree_narrow_phase *narrow_phase)
 {
-    if (narrow_phase->buffers != NULL) narrow_phase->buffers->num_sorted = -1;
+    if (narrow_phase->buffers == NULL) return;
+    narrow_phase->buffers->num_sorted = -1;
+    narrow_phase->buffers->num_carried = 0;
+}
+
+void scree_narrow_phase_carry(scree_narrow_phase *narrow_phase, const scree_bodies *bodies,
+                              const scree_candidate_pair *pairs)
+{
+    struct scree_narrow_phase_buffers *b = narrow_phase->buffers;
+    const bool knows_pairs = b != NULL && b->num_sorted >= 0;
+    scree_narrow_phase_forget(narrow_phase);
+    if (!knows_pairs) return;
+    const pair_batch *batch = b->batches + SCREE_PAIR_MESH_MESH;
+    scree_pair_keep_args args;
+    memset(&args, 0, sizeof args); // the gaps between its members too
+    args.bodies = *bodies;
+    args.pairs = pairs;
+    args.batch = batch->pairs;
+    args.memory = b->memory;
+    args.kept_i = b->first_kept;
+    args.kept_j = b->active;
+    scree_pair_keep_launch_on(narrow_phase->device, args, batch->num);
+    b->num_carried = batch->num;
 }
 
 /// What belongs to the first search.
@@ -116,7 +142,7 @@ static int64_t num_classes(const scree_narrow_phase *narrow_phase)
     return narrow_phase->classes.last - narrow_phase->classes.first + 1;
 }
 
-/// Room for what is known of each pair of meshes. Growing forgets it.
+/// Room for the pairs of meshes.
 static scree_status reserve_mesh_pairs(scree_narrow_phase *narrow_phase)
 {
     struct scree_narrow_phase_buffers *b = narrow_phase->buffers;
@@ -126,10 +152,8 @@ static scree_status reserve_mesh_pairs(scree_narrow_phase *narrow_phase)
     const int64_t max = scree_buffer_grown(num), num_lists = num_classes(narrow_phase);
     b->max_mesh_pairs = 0;
     const bool is_complete = renew(device, &b->first_kept, max, sizeof *b->first_kept) &&
-                             renew(device, &b->active, num_lists * max, sizeof *b->active) &&
-                             renew(device, &b->memory, max, sizeof *b->memory);
+                             renew(device, &b->active, num_lists * max, sizeof *b->active);
     if (!is_complete) return SCREE_OUT_OF_MEMORY;
-    scree_device_zero(device, b->memory, (size_t)max * sizeof *b->memory);
     b->max_mesh_pairs = max;
     return SCREE_OK;
 }
@@ -205,6 +229,36 @@ typedef struct search
     scree_contact_list *list;
 } search;
 
+/// What is known of the pairs of meshes: what was carried, nothing of those that are new.
+static scree_status take_memory(const search *s)
+{
+    struct scree_narrow_phase_buffers *b = s->narrow_phase->buffers;
+    scree_device *device = s->narrow_phase->device;
+    const pair_batch *batch = b->batches + SCREE_PAIR_MESH_MESH;
+    scree_pair_memory *old = b->memory;
+    const int64_t max_old = b->max_memory;
+    b->memory = b->old_memory;
+    b->max_memory = b->max_old_memory;
+    b->old_memory = old;
+    b->max_old_memory = max_old;
+    if (batch->num == 0) return SCREE_OK;
+    const scree_status status = scree_device_reserve(device, &b->memory, &b->max_memory, batch->num, sizeof *b->memory);
+    if (status != SCREE_OK) return status;
+    scree_pair_carry_args args;
+    memset(&args, 0, sizeof args); // the gaps between its members too
+    args.pairs = s->pairs;
+    args.batch = batch->pairs;
+    args.num = batch->num;
+    args.memory = b->memory;
+    args.kept_i = b->first_kept;
+    args.kept_j = b->active;
+    args.old_memory = b->old_memory;
+    args.num_kept = b->num_carried;
+    scree_pair_carry_launch_on(device, args, (batch->num + SCREE_CARRY_BLOCK - 1) / SCREE_CARRY_BLOCK);
+    b->num_carried = 0;
+    return SCREE_OK;
+}
+
 /// Candidate pairs to batches, after they have changed. The list's array over pairs is not yet in use.
 static scree_status sort_pairs(const search *s)
 {
@@ -227,8 +281,8 @@ static scree_status sort_pairs(const search *s)
         args.batch = batch->pairs;
         scree_pair_scatter_launch_on(device, args, s->num_pairs);
     }
+    if (status == SCREE_OK) status = take_memory(s);
     if (status != SCREE_OK) return status;
-    if (b->memory != NULL) scree_device_zero(device, b->memory, (size_t)b->max_mesh_pairs * sizeof *b->memory);
     const int64_t num_on_meshes = b->batches[SCREE_PAIR_SPHERE_MESH].num;
     status = scree_device_reserve(device, &b->start, &b->max_starts, num_on_meshes, sizeof *b->start);
     if (status != SCREE_OK) return status;

@@ -4,8 +4,8 @@
 /// per entry of the table, and a batch that is empty costs no memory.
 ///
 /// A pair of meshes that was found apart by a gap is skipped until its bodies may have travelled that far; one that did
-/// not touch is asked along its last separating direction first. Both can be switched off; neither changes a bit of the
-/// result.
+/// not touch is asked along its last separating direction first. Both outlast a search of candidates. Both can be
+/// switched off; neither changes a bit of the result.
 #ifndef SCREE_NARROW_PHASE_H
 #define SCREE_NARROW_PHASE_H
 
@@ -62,8 +62,14 @@ typedef struct scree_narrow_phase
     struct scree_narrow_phase_buffers *buffers; ///< internal
 } scree_narrow_phase;
 
-/// Forgets what is known of the pairs; call when the candidate pairs have changed.
+/// Forgets what is known of the pairs; call when the candidate pairs have changed, or the bodies have been moved by
+/// more than their travels say.
 void scree_narrow_phase_forget(scree_narrow_phase *narrow_phase);
+/// The same, but what is known of pairs of meshes goes to those of the next search that are among its pairs. Call
+/// before the candidate pairs are searched anew and the travels begin at 0 again, with the bodies at the poses of that
+/// search and the pairs of the one before.
+void scree_narrow_phase_carry(scree_narrow_phase *narrow_phase, const scree_bodies *bodies,
+                              const scree_candidate_pair *pairs);
 
 /// Finds the contacts of all candidate pairs and writes the geometry of `list`; forces and history are left alone.
 /// Same list for any number of threads and on a GPU. SCREE_OUT_OF_MEMORY.

@@ -2,6 +2,8 @@
 
 SCREE_DEFINE_LAUNCH(scree_pair_flag)
 SCREE_DEFINE_LAUNCH(scree_pair_scatter)
+SCREE_DEFINE_LAUNCH(scree_pair_keep)
+SCREE_DEFINE_LAUNCH(scree_pair_carry)
 SCREE_DEFINE_LAUNCH_DYNAMIC(scree_mesh_apart)
 SCREE_DEFINE_LAUNCH_FEW(scree_overlap_pairs)
 SCREE_DEFINE_LAUNCH_FEW(scree_overlap_patches)

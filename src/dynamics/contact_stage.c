@@ -38,15 +38,9 @@ static void sum_up_contacts(const scree_simulation *s)
     scree_indentations_launch_on(s->device, indentations, count_blocks(num, SCREE_WORK_BLOCK));
 }
 
-scree_status scree_update_contacts(scree_simulation *simulation)
+scree_bodies scree_step_bodies(const scree_simulation *simulation)
 {
-    scree_step_buffers *b = simulation->buffers;
-    scree_broad_phase *broad_phase = &simulation->broad_phase;
-
-    // the old list keeps its order by pair as long as no search comes between
-    scree_contact_list_pass_on(&simulation->contacts, &simulation->old_contacts);
-    const scree_contact_list old = simulation->old_contacts;
-
+    const scree_step_buffers *b = simulation->buffers;
     scree_bodies bodies;
     memset(&bodies, 0, sizeof bodies); // the gaps between its members too
     bodies.shapes = simulation->shape_views;
@@ -57,6 +51,19 @@ scree_status scree_update_contacts(scree_simulation *simulation)
     bodies.num_steps = simulation->step - b->searched_step;
     // each particle stays within its skin, together with the walls
     bodies.reach = simulation->scene->solver.reuse_pairs ? (b->has_travel ? 2 : 1) * b->skin : 0;
+    return bodies;
+}
+
+scree_status scree_update_contacts(scree_simulation *simulation)
+{
+    scree_step_buffers *b = simulation->buffers;
+    scree_broad_phase *broad_phase = &simulation->broad_phase;
+
+    // the old list keeps its order by pair as long as no search comes between
+    scree_contact_list_pass_on(&simulation->contacts, &simulation->old_contacts);
+    const scree_contact_list old = simulation->old_contacts;
+
+    const scree_bodies bodies = scree_step_bodies(simulation);
     scree_status status = scree_narrow_phase_find(&simulation->narrow_phase, &bodies, broad_phase->pairs,
                                                   broad_phase->num_pairs, &simulation->contacts);
     scree_stage_end(&simulation->clock, SCREE_STAGE_CONTACTS);

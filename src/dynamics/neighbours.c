@@ -36,9 +36,10 @@ static bool is_search_due(scree_simulation *s)
 {
     const scree_step_buffers *b = s->buffers;
     if (!b->has_pairs || !s->scene->solver.reuse_pairs) return true;
+    follow_bodies(s);
     for (int32_t w = 0; w < s->num_walls; ++w)
         if (s->walls[w].is_present != b->wall_input[w].is_present) return true;
-    follow_bodies(s);
+    if (b->is_search_asked) return true;
     // not a number asks for a search
     return !(b->moved <= b->skin);
 }
@@ -80,14 +81,17 @@ scree_status scree_update_neighbours(scree_simulation *simulation)
     input.walls = b->broad_phase_walls;
     input.num_particles = num_particles;
     input.num_walls = simulation->num_walls;
+    const scree_bodies bodies = scree_step_bodies(simulation);
+    if (!b->has_pairs || !simulation->scene->solver.reuse_pairs) scree_narrow_phase_forget(&simulation->narrow_phase);
+    else scree_narrow_phase_carry(&simulation->narrow_phase, &bodies, simulation->broad_phase.pairs);
     const scree_status status = scree_broad_phase_find(&simulation->broad_phase, &input);
     if (status != SCREE_OK) return status;
 
-    scree_narrow_phase_forget(&simulation->narrow_phase);
     scree_device_zero(device, b->travel, (size_t)num_bodies * sizeof *b->travel);
     scree_device_copy(device, b->searched_pose, b->pose, (size_t)num_bodies * sizeof *b->pose);
     if (b->has_travel) scree_device_copy(device, b->last_pose, b->pose, (size_t)num_bodies * sizeof *b->pose);
     b->has_pairs = true;
+    b->is_search_asked = false;
     b->searched_step = simulation->step;
     b->is_old_list_of_same_pairs = false;
     ++simulation->counters.num_rebuilds;

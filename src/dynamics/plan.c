@@ -25,7 +25,7 @@ scree_plan_bytes scree_simulation_plan_bytes(const scree_simulation *simulation)
     // ids, rows, keys to sort, batch, first contact now and in the step before
     bytes.pair = sizeof(scree_candidate_pair) + 2 * sizeof(int32_t) + 2 * sizeof(uint64_t) + sizeof(int32_t) +
                  2 * sizeof(int64_t);
-    if (has_meshes) bytes.mesh_pair = sizeof(scree_pair_memory) + 2 * sizeof(int32_t);
+    if (has_meshes) bytes.mesh_pair = 2 * sizeof(scree_pair_memory) + 2 * sizeof(int32_t);
     if ((has_spheres || has[SCREE_KIND_CLUMP]) && (has_meshes || s->num_walls > 0))
         bytes.sphere_mesh_pair = 3 * sizeof(scree_sphere_contact);
     bytes.contact = (size_t)scree_contact_list_bytes(&s->contacts) + sizeof(int64_t) + 1;

@@ -32,7 +32,8 @@ typedef struct scree_step_buffers
     double mean_radius;                        ///< [m] of the particles' bounding spheres
     scree_real moved;                          ///< [m] way of the fastest bodies between it and the present step
     int64_t searched_step;                     ///< step of the last search
-    bool has_pairs;                            ///< false: search before the next step
+    bool has_pairs;                            ///< false: search before the next step, and nothing is known of pairs
+    bool is_search_asked;                      ///< search before the next step, though the skin may be wide enough
 
     // moving walls
     int32_t *moving_wall;       ///< (num_walls) index among the moving ones, or -1
@@ -85,6 +86,8 @@ scree_status scree_account_work(scree_simulation *simulation);
 /// Takes up what the kernels have counted so far.
 void scree_take_tally(scree_simulation *simulation);
 
+/// The bodies as the narrow phase sees them.
+scree_bodies scree_step_bodies(const scree_simulation *simulation);
 scree_body_motion scree_step_body_motion(const scree_step_buffers *buffers);
 
 #endif

@@ -24,6 +24,8 @@ SCREE_DECLARE_LAUNCH_CUDA(scree_ended_collisions)
 SCREE_DECLARE_LAUNCH_CUDA(scree_wall_load)
 SCREE_DECLARE_LAUNCH_CUDA(scree_pair_flag)
 SCREE_DECLARE_LAUNCH_CUDA(scree_pair_scatter)
+SCREE_DECLARE_LAUNCH_CUDA(scree_pair_keep)
+SCREE_DECLARE_LAUNCH_CUDA(scree_pair_carry)
 SCREE_DECLARE_LAUNCH_CUDA(scree_mesh_apart)
 SCREE_DECLARE_LAUNCH_CUDA(scree_mesh_gap)
 SCREE_DECLARE_LAUNCH_CUDA(scree_mesh_write)
@@ -83,6 +85,40 @@ static void keep_geometry(side &where, const scree_contact_list &list, int64_t n
     where.keep(list.area_vector, n);
     where.keep(list.torque_vector, n);
     where.keep(list.arm, n);
+}
+
+/// What is known of the pairs of meshes in the batch to a batch of only every third, as after a search.
+static void carry_memory_on(side &where, const scree_mesh_pairs_args &args, int64_t num)
+{
+    scree_pair_keep_args keep = {};
+    keep.bodies = args.bodies;
+    keep.bodies.num_steps = 10;
+    keep.pairs = args.pairs;
+    keep.batch = args.batch;
+    keep.memory = args.memory;
+    keep.kept_i = where.make<int32_t>(num);
+    keep.kept_j = where.make<int32_t>(num);
+    LAUNCH_ON(where, scree_pair_keep, keep, num);
+    where.keep(keep.memory, num);
+    where.keep(keep.kept_i, num);
+
+    std::vector<int32_t> batch;
+    for (const int32_t p : where.read(args.batch, num))
+        if (p % 3 == 0) batch.push_back(p);
+    scree_pair_carry_args carry = {};
+    carry.num = (int64_t)batch.size();
+    carry.pairs = args.pairs;
+    carry.batch = where.copy(batch.data(), carry.num);
+    carry.memory = where.make<scree_pair_memory>(carry.num);
+    carry.kept_i = keep.kept_i;
+    carry.kept_j = keep.kept_j;
+    carry.old_memory = keep.memory;
+    carry.num_kept = num;
+    LAUNCH_ON(where, scree_pair_carry, carry, (carry.num + SCREE_CARRY_BLOCK - 1) / SCREE_CARRY_BLOCK);
+    where.keep(carry.memory, carry.num);
+    int64_t num_known = 0;
+    for (const scree_pair_memory &memory : where.read(carry.memory, carry.num)) num_known += memory.apart_until != 0;
+    SCREE_CHECK(num_known > 10);
 }
 
 /// The pairs of meshes, from all candidates to what they write into the list.
@@ -164,6 +200,7 @@ static void find_overlaps_on(side &where, bool separates)
     args.list = empty_list(where, first, n);
     LAUNCH_ON(where, scree_mesh_write, args, num);
     keep_geometry(where, args.list, n);
+    carry_memory_on(where, args, num);
 }
 
 static void test_overlaps()

@@ -10,6 +10,7 @@
 #include "bvh/lbvh_kernel.h"
 #include "bvh/morton_kernel.h"
 #include "core/atomic_kernel.h"
+#include "core/team.h"
 
 /// The boxes are bounded in this many shares.
 #define SCREE_LBVH_BOUNDS_CHUNKS 256
@@ -46,13 +47,22 @@ typedef scree_lbvh_build_args scree_lbvh_left_turns_args;
 typedef scree_lbvh_build_args scree_lbvh_nodes_args;
 
 /// Bounds of the middles of share c of the boxes.
-SCREE_FN void scree_lbvh_bounds_at(scree_lbvh_bounds_args a, int64_t c)
+SCREE_FN void scree_lbvh_bounds_team_at(scree_lbvh_bounds_args a, const scree_team *team, int64_t c)
 {
     const int64_t begin = a.num_leaves * c / SCREE_LBVH_BOUNDS_CHUNKS;
     const int64_t end = a.num_leaves * (c + 1) / SCREE_LBVH_BOUNDS_CHUNKS;
     scree_box bounds = scree_box_empty();
-    for (int64_t i = begin; i < end; ++i) bounds = scree_box_with_point(bounds, scree_morton_middle(a.boxes[i]));
-    a.chunk_bounds[c] = bounds;
+    for (int64_t i = begin + scree_team_lane(team); i < end; i += scree_team_size(team))
+        bounds = scree_box_with_point(bounds, scree_morton_middle(a.boxes[i]));
+    bounds.upper = scree_team_max3(team, bounds.upper);
+    bounds.lower = scree_vec3_negate(scree_team_max3(team, scree_vec3_negate(bounds.lower)));
+    if (scree_team_leads(team)) a.chunk_bounds[c] = bounds;
+}
+
+SCREE_FN void scree_lbvh_bounds_at(scree_lbvh_bounds_args a, int64_t c)
+{
+    const scree_team team = scree_team_alone();
+    scree_lbvh_bounds_team_at(a, &team, c);
 }
 
 /// Code of box i, before the sort.

@@ -56,7 +56,7 @@
 
 /// Teams of args.num_lanes. One block on a multiprocessor is enough: a thread may have all the registers there are.
 #define SCREE_DEFINE_TEAM_LAUNCH(name) SCREE_DEFINE_LAUNCH_OF_TEAMS(name, args.num_lanes, SCREE_CUDA_BLOCK, 1)
-/// Warps that make sums (team_sum.h), five blocks at a time on a multiprocessor.
+/// Warps that make sums (team_sum.h) or bounds, five blocks at a time on a multiprocessor.
 #define SCREE_DEFINE_SUM_LAUNCH(name) SCREE_DEFINE_LAUNCH_OF_TEAMS(name, SCREE_SUM_LANES, SCREE_CUDA_BLOCK, 5)
 
 #endif

@@ -13,6 +13,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
+#include <sys/resource.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -68,6 +70,9 @@ typedef struct run_state
     int64_t start_step;
     bool has_warned;        ///< of a time step that is too long
     bool has_warned_inside; ///< of a sphere whose centre is inside a solid
+    bool has_warned_shared; ///< of other processes on the cores of its threads
+    double watched_clock;   ///< when they were last looked for
+    long watched_switches;  ///< interruptions by them until then
     bool is_terminal;
     double shown_clock; ///< when progress was last shown
     int64_t shown_step;
@@ -244,6 +249,31 @@ static void warn_of_inside(run_state *run)
         "it is pushed out where the surface is nearest. Contacts are too soft for the speeds, or the step "
         "too long: raise youngs_modulus or choose a smaller time.step",
         scree_simulation_time(run->simulation));
+    tell_report(run);
+}
+
+/// Threads that other processes interrupt, once: those that wait for one spin, and so keep it from going on.
+static void warn_of_sharing(run_state *run)
+{
+    const double interval = 5; // [s]
+    const int num_threads = omp_get_max_threads();
+    const char *policy = getenv("OMP_WAIT_POLICY");
+    if (run->has_warned_shared || num_threads == 1 || (policy != NULL && strcasecmp(policy, "passive") == 0)) return;
+    const double now = wall_clock();
+    if (now - run->watched_clock < interval) return;
+    struct rusage usage;
+    getrusage(RUSAGE_SELF, &usage);
+    const double rate = (double)(usage.ru_nivcsw - run->watched_switches) / (now - run->watched_clock);
+    run->watched_clock = now;
+    run->watched_switches = usage.ru_nivcsw;
+    // on a machine of its own there are a few; a scheduler that shares a core gives turns of some milliseconds
+    if (rate < 20 * num_threads) return;
+    run->has_warned_shared = true;
+    scree_report_warn(&run->report,
+                      "other processes interrupt the %d threads of this run %.0f times a second, and threads that wait "
+                      "for each other then take many times as long: set OMP_WAIT_POLICY=passive in the environment, or "
+                      "fewer --threads",
+                      num_threads, rate);
     tell_report(run);
 }
 
@@ -424,6 +454,7 @@ static scree_status advance(run_state *run)
         if (status != SCREE_OK) break;
         warn_of_time_step(run);
         warn_of_inside(run);
+        warn_of_sharing(run);
         show_progress_sometimes(run);
     }
     return status;
@@ -542,7 +573,7 @@ static int run_scene(const run_request *request)
             fflush(stdout);
         }
         catch_signals();
-        run.start_clock = run.shown_clock = wall_clock();
+        run.start_clock = run.shown_clock = run.watched_clock = wall_clock();
         run.shown_step = run.start_step;
         exit_code = conclude(&run, advance(&run));
     }

@@ -575,3 +575,29 @@ def test_progress_on_a_terminal_stays_in_its_line(scene, tmp_path):
 def test_the_default_folder_is_named_after_the_scene(scene, tmp_path):
     run(scene, "--set", "time.end=0.001", cwd=tmp_path)
     assert summary_of(tmp_path / "runs" / "few rocks")["outcome"] == "finished"
+
+
+@pytest.mark.skipif(len(os.sched_getaffinity(0)) < 2, reason="one processor: waiting threads do not spin there")
+@pytest.mark.parametrize("policy, is_warned", [("active", True), ("passive", False)])
+def test_threads_on_a_shared_machine_are_warned_of(scene, tmp_path, policy, is_warned):
+    two = list(os.sched_getaffinity(0))[:2]
+    sharing = {"preexec_fn": lambda: os.sched_setaffinity(0, two)}
+    changes = ["particles.rocks.count=1000", "particles.rocks.size.min=0.003", "particles.rocks.size.max=0.004",
+               "time.step=auto", "time.end=1000"]
+    command = [PROGRAM, "run", str(scene), "-o", str(tmp_path / "run"), "--threads", "2", "--quiet"]
+    command += [word for change in changes for word in ("--set", change)]
+    told = tmp_path / "told.txt"
+    others = [subprocess.Popen(["sh", "-c", "while :; do :; done"], **sharing) for _ in range(4)]
+    try:
+        with told.open("w") as out:
+            process = subprocess.Popen(command, stderr=out, env=dict(os.environ, OMP_WAIT_POLICY=policy), **sharing)
+        end = time.monotonic() + (60 if is_warned else 8)
+        while process.poll() is None and time.monotonic() < end and told.stat().st_size == 0:
+            time.sleep(0.1)
+        process.terminate()
+        assert process.wait() == 143
+    finally:
+        for other in others:
+            other.kill()
+            other.wait()
+    assert ("OMP_WAIT_POLICY=passive" in told.read_text()) == is_warned

@@ -2,6 +2,28 @@
 // against closed forms. What they published to four digits is met as well.
 #include "chung_ooi_solids.h"
 
+enum
+{
+    NUM_STEPS = 3 ///< time steps of an impact, each a quarter of the one before
+};
+
+/// Restitutions at time steps of t_c/num and a quarter and a sixteenth of it.
+/// Damped: the force starts as d^(1/4), of which a sum over steps misses a part that goes as dt^(5/4), w dt of the
+/// speed at the most. What does not depend on the step, `offset` at the most, is gone in differences; with a quarter of
+/// the step they are a quarter or less for an order of one, at the most a third. Elastic: of second order, (w dt)^2/4;
+/// how much of it depends on where within a step contact ends.
+static void check_order(double wanted, int num, const double e[NUM_STEPS], double offset)
+{
+    printf("  e = %g: errors %.2e, %.2e and %.2e with %d, %d and %d steps\n", wanted, e[0] - wanted, e[1] - wanted,
+           e[2] - wanted, num, 4 * num, 16 * num);
+    for (int s = 0; s < NUM_STEPS; ++s)
+    {
+        const double share = M_PI / (num << 2 * s);
+        SCREE_CHECK_CLOSE(e[s], wanted, offset + (wanted < 1 ? share : share * share / 4));
+    }
+    if (wanted < 1) SCREE_CHECK(fabs(e[2] - e[1]) < fabs(e[1] - e[0]) / 3);
+}
+
 /// Elastic impact at t_c/dt = 50 and 200 against Hertz's closed form and the published values (0: none).
 static void check_elastic(const char *name, impact_def def, double deepest, double force, double time)
 {
@@ -60,23 +82,25 @@ static void test_3_restitution(void)
         impact_def def = define(solids[k], 0.0025, 3.9);
         check_elastic(solids[k].name, def, published[k][0], published[k][1], published[k][2]);
         for (int n = 1; n <= 5; ++n)
-            for (int num = 4000; num <= 16000; num *= 4)
+        {
+            double e[NUM_STEPS];
+            for (int s = 0; s < NUM_STEPS; ++s)
             {
                 def.restitution = 0.2 * n;
-                def.time_step = hertz_contact_time(&def) / num;
-                const impact_result r = impact_run(&def);
-                // Damping starts with a jump of the force, 2 g w v; a step earlier or later, hence w dt in e at the
-                // most, below 1e-3 for both steps. Of first order.
-                SCREE_CHECK_CLOSE(r.velocity[0][2] / 3.9, def.restitution, M_PI / num);
+                def.time_step = hertz_contact_time(&def) / (1000 << 2 * s);
+                e[s] = impact_run(&def).velocity[0][2] / 3.9;
+                SCREE_CHECK_CLOSE(e[s], def.restitution, 1e-3);
             }
+            check_order(def.restitution, 1000, e, 0);
+        }
     }
 }
 
 /// Impact that slides from touch to separation: friction is mu F_n in every step, so whatever the restitution is in the
-/// numbers, the impulses keep the ratio mu to rounding: 2e-16 of a speed for each of the 400 steps and more. The
+/// numbers, the impulses keep the ratio mu to rounding at any time step: twice 2e-16 of a speed for each step. The
 /// tangential force acts at the depth d/2, where the arm is up to d_max/R shorter than the radius. Between two spheres
-/// the normal turns with the line of centres, and both impulses with it.
-static void check_sliding(const char *name, const impact_def *def, double *restitution)
+/// the normal turns with the line of centres, and both impulses with it. Returns how far [rad].
+static double check_sliding(const char *name, const impact_def *def, double *restitution)
 {
     const impact_result r = impact_run(def);
     const int num = def->body[1].radius > 0 ? 2 : 1;
@@ -84,12 +108,13 @@ static void check_sliding(const char *name, const impact_def *def, double *resti
     const double rolled = num > 1 ? fabs(r.velocity[0][0] - r.velocity[1][0]) * r.contact_time : 0;
     const double turn = num > 1 ? rolled / (def->body[0].radius + def->body[1].radius) : 0;
     const double scale = fabs(def->body[0].velocity[0]) + fabs(def->body[0].velocity[2]);
+    const double rounding = 4e-16 * r.contact_time / def->time_step * scale;
     for (int k = 0; k < num; ++k)
     {
         const impact_body *b = def->body + k;
         const double pushed = r.velocity[k][2] - b->velocity[2], rubbed = r.velocity[k][0] - b->velocity[0];
         SCREE_CHECK_CLOSE(rubbed, -sense * def->friction * pushed,
-                          1e-13 * scale + turn * (1 + def->friction * def->friction) * fabs(pushed));
+                          rounding + turn * (1 + def->friction * def->friction) * fabs(pushed));
         // both spins change in the same sense: the forces and the arms are opposite
         const double spun = r.spin[k][1] - b->spin[1];
         const double expected = sense * 2.5 * def->friction * fabs(pushed) / b->radius;
@@ -100,6 +125,7 @@ static void check_sliding(const char *name, const impact_def *def, double *resti
     }
     const double before = impact_approach(def), after = r.velocity[0][2] - (num > 1 ? r.velocity[1][2] : 0);
     *restitution = after / before;
+    return turn;
 }
 
 /// Speed and spin after sliding throughout: e_t = 1 - mu (1 + e)/tan, spin = 2.5 mu (1 + e) v_n/R.
@@ -114,16 +140,16 @@ static void test_4_oblique_impact(void)
         def.body[0].velocity[2] = -3.9 * cos(angle);
         def.friction = 0.092;
         def.restitution = 0.98;
-        for (int num = 100; num <= 400; num *= 4)
+        double e[NUM_STEPS];
+        for (int s = 0; s < NUM_STEPS; ++s)
         {
-            def.time_step = hertz_contact_time(&def) / num;
+            def.time_step = hertz_contact_time(&def) / (100 << 2 * s);
             const impact_result r = impact_run(&def);
             SCREE_CHECK_CLOSE(r.velocity[0][0] / def.body[0].velocity[0], e_t[k], 1e-3);
             SCREE_CHECK_CLOSE(r.spin[0][1], spin[k], 0.005 * spin[k]);
-            double e;
-            check_sliding("4, Al oxide", &def, &e);
-            SCREE_CHECK_CLOSE(e, 0.98, M_PI / num);
+            check_sliding("4, Al oxide", &def, e + s);
         }
+        check_order(0.98, 100, e, 0);
     }
 }
 
@@ -137,10 +163,13 @@ static void test_5_constant_normal_velocity(void)
             impact_def def = define(solids[k], 1e-5, 5);
             def.body[0].velocity[0] = 5 * tangent;
             def.friction = 0.3;
-            def.time_step = hertz_contact_time(&def) / 200;
-            double e;
-            check_sliding(solids[k].name, &def, &e);
-            SCREE_CHECK_CLOSE(e, 1, pow(M_PI / 200, 2) / 4);
+            double e[NUM_STEPS];
+            for (int s = 0; s < NUM_STEPS; ++s)
+            {
+                def.time_step = hertz_contact_time(&def) / (200 << 2 * s);
+                check_sliding(solids[k].name, &def, e + s);
+            }
+            check_order(1, 200, e, 0);
         }
 }
 
@@ -154,10 +183,14 @@ static void check_spin(const char *name, solid of, double partner)
         def.body[0].spin[1] = -spin;
         def.friction = 0.4;
         def.restitution = 0.5;
-        def.time_step = hertz_contact_time(&def) / 400;
-        double e;
-        check_sliding(name, &def, &e);
-        SCREE_CHECK_CLOSE(e, 0.5, M_PI / 400);
+        double e[NUM_STEPS], turn = 0;
+        for (int s = 0; s < NUM_STEPS; ++s)
+        {
+            def.time_step = hertz_contact_time(&def) / (400 << 2 * s);
+            turn = check_sliding(name, &def, e + s);
+        }
+        // where the normal turns, friction lends it a part, and it takes one of the speed along the surface
+        check_order(0.5, 400, e, 2 * def.friction * 1.5 * turn);
     }
 }
 
@@ -178,15 +211,20 @@ static void test_7_counter_spin_of_equal_spheres(void)
         def.body[0].spin[1] = -7;
         def.friction = 0.4;
         def.restitution = 0.5;
-        def.time_step = hertz_contact_time(&def) / 400;
-        const impact_result r = impact_run(&def);
-        for (int b = 0; b < 2; ++b)
+        double e[NUM_STEPS];
+        for (int s = 0; s < NUM_STEPS; ++s)
         {
-            SCREE_CHECK_CLOSE(r.velocity[b][0], 0, 1e-15);
-            SCREE_CHECK(r.velocity[b][1] == 0);
-            SCREE_CHECK_CLOSE(r.spin[b][1], b == 0 ? -7 : 7, 1e-14);
+            def.time_step = hertz_contact_time(&def) / (400 << 2 * s);
+            const impact_result r = impact_run(&def);
+            for (int b = 0; b < 2; ++b)
+            {
+                SCREE_CHECK_CLOSE(r.velocity[b][0], 0, 1e-15);
+                SCREE_CHECK(r.velocity[b][1] == 0);
+                SCREE_CHECK_CLOSE(r.spin[b][1], b == 0 ? -7 : 7, 1e-14);
+            }
+            e[s] = (r.velocity[0][2] - r.velocity[1][2]) / 0.4;
         }
-        SCREE_CHECK_CLOSE((r.velocity[0][2] - r.velocity[1][2]) / 0.4, 0.5, M_PI / 400);
+        check_order(0.5, 400, e, 0);
     }
 }
 

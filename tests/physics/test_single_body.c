@@ -10,44 +10,50 @@
 
 static void test_free_fall_is_a_parabola(void)
 {
-    scene_run run;
-    scene_run_start(&run, "name: fall\ntime: {end: 1, step: 1e-3}\n" MATERIALS
-                          "contact_laws: [{materials: [stone, stone], friction_coefficient: 0.5, "
-                          "restitution_coefficient: 0.5}]\n"
-                          "particles:\n"
-                          "  - name: one\n    shape: cube\n    material: stone\n"
-                          "    bodies: [{position: [1, 2, 3], velocity: [0.5, 0, 2], angular_velocity: [0, 0, 3]}]\n");
-    scene_run_until(&run, 1.0);
-    if (run.simulation != NULL)
+    for (double dt = 1e-3; dt > 1e-4; dt /= 4)
     {
+        char text[1024];
+        snprintf(text, sizeof text,
+                 "name: fall\ntime: {end: 1, step: %g}\n" MATERIALS
+                 "contact_laws: [{materials: [stone, stone], friction_coefficient: 0.5, "
+                 "restitution_coefficient: 0.5}]\n"
+                 "particles:\n"
+                 "  - name: one\n    shape: cube\n    material: stone\n"
+                 "    bodies: [{position: [1, 2, 3], velocity: [0.5, 0, 2], angular_velocity: [0, 0, 3]}]\n",
+                 dt);
+        scene_run run;
+        scene_run_start(&run, text);
+        scene_run_until(&run, 1.0);
+        if (run.simulation == NULL) return;
         const scree_particles *p = &run.simulation->particles;
-        // constant force: velocity Verlet is exact, 1000 steps of rounding remain
+        // constant force: velocity Verlet is exact at any step, rounding of 1000 and 4000 steps remains
         SCREE_CHECK_CLOSE(p->position[0].x, 1.5, 1e-12);
         SCREE_CHECK_CLOSE(p->position[0].z, 3 + 2 - 0.5 * 9.81, 1e-11);
         SCREE_CHECK_CLOSE(p->velocity[0].z, 2 - 9.81, 1e-11);
-        // a cube turns like a ball: 4 atan(w dt/4) a step
+        // a cube turns like a ball: 4 atan(w dt/4) a step, behind by w^3 dt^2/48 in a second, of second order
         const double angle = 2 * atan2((double)p->orientation[0].z, (double)p->orientation[0].w);
-        SCREE_CHECK_CLOSE(angle, 1000 * 4 * atan(3e-3 / 4), 1e-11);
+        SCREE_CHECK_CLOSE(angle, 4 / dt * atan(3 * dt / 4), 1e-11);
+        SCREE_CHECK_CLOSE(3 - angle, 27 * dt * dt / 48, 1e-11);
         const scree_energies e = scree_simulation_energies(run.simulation);
         const double mass = 2500 * 1e-3;
         SCREE_CHECK_CLOSE(e.kinetic, 0.5 * mass * (0.25 + 7.81 * 7.81), 1e-9);
         SCREE_CHECK_CLOSE(e.rotational, 0.5 * mass * 0.01 / 6 * 9, 1e-12);
+        scene_run_end(&run);
     }
-    scene_run_end(&run);
 }
 
 /// Block on a plate under gravity tilted by `angle`: the same as an incline. Returns speed and distance along x.
-static void slide(double tangent, double friction, double seconds, double *speed, double *distance)
+static void slide(double tangent, double friction, double time_step, double seconds, double *speed, double *distance)
 {
     const double angle = atan(tangent);
     char text[2048];
     snprintf(text, sizeof text,
-             "name: incline\ngravity: [%.17g, 0, %.17g]\ntime: {end: 1, step: 1e-4}\n" MATERIALS
+             "name: incline\ngravity: [%.17g, 0, %.17g]\ntime: {end: 1, step: %g}\n" MATERIALS
              "contact_laws: [{materials: [stone, stone], friction_coefficient: %g, restitution_coefficient: 0.3}]\n"
              "particles:\n  - name: block\n    shape: cube\n    material: stone\n"
              "    bodies: [{position: [0, 0, 0.05]}]\n"
              "walls:\n  - {name: incline, shape: plate, material: stone, position: [0, 0, -0.1]}\n",
-             9.81 * sin(angle), -9.81 * cos(angle), friction);
+             9.81 * sin(angle), -9.81 * cos(angle), time_step, friction);
     scene_run run;
     scene_run_start(&run, text);
     scene_run_until(&run, seconds);
@@ -62,24 +68,32 @@ static void slide(double tangent, double friction, double seconds, double *speed
 
 static void test_block_sticks_below_the_angle_of_friction(void)
 {
-    double speed, early, late;
-    slide(0.4 * 0.98, 0.4, 0.8, &speed, &early);
-    slide(0.4 * 0.98, 0.4, 1.0, &speed, &late);
-    // so near the limit it slips while it settles; then its last swing dies out and it does not creep
-    SCREE_CHECK(fabs(speed) < 1e-7);
-    SCREE_CHECK(fabs(late - early) < 1e-8);
+    for (double dt = 1e-4; dt > 2e-5; dt /= 4)
+    {
+        double speed, early, late;
+        slide(0.4 * 0.98, 0.4, dt, 0.8, &speed, &early);
+        slide(0.4 * 0.98, 0.4, dt, 1.0, &speed, &late);
+        printf("dt = %g s: speed %.1e m/s, %.1e m in the last 0.2 s\n", dt, speed, late - early);
+        // so near the limit it slips while it settles; then its last swing dies out and it does not creep
+        SCREE_CHECK(fabs(speed) < 1e-7);
+        SCREE_CHECK(fabs(late - early) < 1e-8);
+    }
 }
 
-/// Mean acceleration of a block that slides on its face against g (sin - mu cos): exact once it has settled.
+/// Mean acceleration of a block that slides on its face against g (sin - mu cos): exact at any step once it has
+/// settled.
 static void check_acceleration(double tangent, double friction)
 {
     const double angle = atan(tangent), expected = 9.81 * (sin(angle) - friction * cos(angle));
-    double early, late, distance;
-    slide(tangent, friction, 0.2, &early, &distance);
-    slide(tangent, friction, 0.7, &late, &distance);
-    printf("tan %.2f, mu %.2f: acceleration %.6f, expected %.6f m/s^2\n", tangent, friction, (late - early) / 0.5,
-           expected);
-    SCREE_CHECK_CLOSE((late - early) / 0.5, expected, 1e-6 * 9.81);
+    for (double dt = 1e-4; dt > 2e-5; dt /= 4)
+    {
+        double early, late, distance;
+        slide(tangent, friction, dt, 0.2, &early, &distance);
+        slide(tangent, friction, dt, 0.7, &late, &distance);
+        printf("tan %.2f, mu %.2f, dt %g: acceleration - expected %.1e m/s^2\n", tangent, friction, dt,
+               (late - early) / 0.5 - expected);
+        SCREE_CHECK_CLOSE((late - early) / 0.5, expected, 1e-6 * 9.81);
+    }
 }
 
 static void test_block_slips_above_the_angle_of_friction(void)

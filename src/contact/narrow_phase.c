@@ -21,7 +21,7 @@ struct scree_narrow_phase_buffers
     int64_t num_sorted; ///< candidate pairs that the batches are made of; -1: they have changed
     pair_batch batches[SCREE_NUM_PAIR_KINDS];
     scree_scan_scratch scan;
-    scree_pair_tally *tally;
+    scree_pair_tally *tally; ///< may be borrowed
 
     // two meshes
     scree_overlap_pool pool;
@@ -59,7 +59,7 @@ void scree_narrow_phase_destroy(scree_narrow_phase *narrow_phase)
         for (int k = 0; k < SCREE_NUM_PAIR_KINDS; ++k) scree_device_free(device, b->batches[k].pairs);
         scree_scan_destroy(&b->scan);
         scree_overlap_pool_destroy(&b->pool);
-        scree_device_free(device, b->tally);
+        if (narrow_phase->tally == NULL) scree_device_free(device, b->tally);
         scree_device_free(device, b->results);
         scree_device_free(device, b->kept);
         scree_device_free(device, b->kept_levers);
@@ -72,7 +72,7 @@ void scree_narrow_phase_destroy(scree_narrow_phase *narrow_phase)
         scree_device_free(device, b->start);
         free(b);
     }
-    *narrow_phase = (scree_narrow_phase){.device = device};
+    *narrow_phase = (scree_narrow_phase){.device = device, .tally = narrow_phase->tally};
 }
 
 void scree_narrow_phase_forget(scree_narrow_phase *narrow_phase)
@@ -112,7 +112,8 @@ static scree_status start(scree_narrow_phase *narrow_phase)
     narrow_phase->buffers = b;
     b->num_sorted = -1;
     b->scan.device = b->pool.device = narrow_phase->device;
-    b->tally = scree_device_alloc(narrow_phase->device, 1, sizeof *b->tally);
+    b->tally = narrow_phase->tally;
+    if (b->tally == NULL) b->tally = scree_device_alloc(narrow_phase->device, 1, sizeof *b->tally);
     return b->tally != NULL ? SCREE_OK : SCREE_OUT_OF_MEMORY;
 }
 
@@ -377,9 +378,9 @@ static void find_overlaps(const search *s)
     }
 }
 
-/// How many contacts each pair has, added up in the list. Returns the counts of the search; what was found of a pair
-/// that had no room is not among them.
-static scree_pair_tally count_contacts(const search *s)
+/// How many contacts each pair has, added up in the list and counted in the tally, but for what was found of a pair
+/// that had no room.
+static void count_contacts(const search *s)
 {
     struct scree_narrow_phase_buffers *b = s->narrow_phase->buffers;
     scree_device *device = s->narrow_phase->device;
@@ -394,9 +395,6 @@ static scree_pair_tally count_contacts(const search *s)
     int64_t *first_of_pair = s->list->first_of_pair;
     scree_scan_on(&b->scan, first_of_pair, s->num_pairs);
     scree_device_copy(device, &b->tally->num_contacts, first_of_pair + s->num_pairs, sizeof *first_of_pair);
-    scree_pair_tally tally = {0};
-    scree_device_read(device, &tally, b->tally, sizeof tally);
-    return tally;
 }
 
 /// More room for what had none. False if all had.
@@ -404,6 +402,7 @@ static bool make_room(const search *s, const scree_pair_tally *tally, scree_stat
 {
     const struct scree_narrow_phase_buffers *b = s->narrow_phase->buffers;
     const int32_t most_results = (int32_t)scree_maximum_value(tally->most_results);
+    if (!scree_lacks_room(tally, b->max_kept)) return false;
     const bool lacks_kept = tally->num_kept > b->max_kept;
     const int32_t most_found = (int32_t)scree_maximum_value(tally->most_found);
     scree_overlap_room room = b->pool.room;
@@ -412,7 +411,6 @@ static bool make_room(const search *s, const scree_pair_tally *tally, scree_stat
     if (tally->num_lacking[SCREE_LACK_CROSSINGS] > 0) room.max_crossings *= 2;
     const int64_t num_lacking = tally->num_lacking[SCREE_LACK_PIECES] + tally->num_lacking[SCREE_LACK_SHAPE] +
                                 tally->num_lacking[SCREE_LACK_CROSSINGS];
-    if (num_lacking == 0 && most_results == 0 && most_found == 0 && !lacks_kept) return false;
     if (most_found >> SCREE_PATCH_BITS > 0)
     {
         *status = SCREE_TOO_MANY;
@@ -435,14 +433,11 @@ static void find_gaps(const search *s)
                                  s->narrow_phase->buffers->batches[SCREE_PAIR_MESH_MESH].num);
 }
 
-/// Contacts of all pairs to the list, in the order of the pairs.
-static scree_status write_contacts(const search *s, int64_t num_contacts)
+/// Contacts of all pairs to the list, in the order of the pairs. It has room for them.
+static void write_contacts(const search *s)
 {
     const pair_batch *batches = s->narrow_phase->buffers->batches;
     scree_device *device = s->narrow_phase->device;
-    const scree_status status = scree_contact_list_reserve(s->list, num_contacts, s->num_pairs);
-    if (status != SCREE_OK) return status;
-    s->list->num_contacts = num_contacts;
     scree_mesh_write_launch_on(device, mesh_args(s), batches[SCREE_PAIR_MESH_MESH].num);
     scree_sphere_sphere_write_launch_on(device, sphere_args(s, SCREE_PAIR_SPHERE_SPHERE),
                                         batches[SCREE_PAIR_SPHERE_SPHERE].num);
@@ -450,7 +445,6 @@ static scree_status write_contacts(const search *s, int64_t num_contacts)
                                       batches[SCREE_PAIR_CLUMP_CLUMP].num);
     scree_sphere_mesh_write_launch_on(device, sphere_args(s, SCREE_PAIR_SPHERE_MESH),
                                       batches[SCREE_PAIR_SPHERE_MESH].num);
-    return SCREE_OK;
 }
 
 scree_status scree_narrow_phase_find(scree_narrow_phase *narrow_phase, const scree_bodies *bodies,
@@ -469,14 +463,40 @@ scree_status scree_narrow_phase_find(scree_narrow_phase *narrow_phase, const scr
     scree_pair_tally tally = {0};
     for (bool is_complete = false; !is_complete && status == SCREE_OK;)
     {
-        tally = count_contacts(&s);
+        count_contacts(&s);
+        scree_device_read(narrow_phase->device, &tally, narrow_phase->buffers->tally, sizeof tally);
         is_complete = !make_room(&s, &tally, &status);
     }
     if (status == SCREE_OK) find_gaps(&s);
-    if (status == SCREE_OK) status = write_contacts(&s, tally.num_contacts);
-    narrow_phase->counts.num_without_normal = tally.num_without_normal;
-    narrow_phase->counts.num_fallbacks = tally.num_fallbacks;
-    narrow_phase->counts.num_inside = tally.num_inside;
-    narrow_phase->counts.worst_residual = (scree_real)scree_maximum_value(tally.worst_residual);
+    if (status == SCREE_OK) status = scree_contact_list_reserve(list, tally.num_contacts, num_pairs);
+    if (status == SCREE_OK)
+    {
+        list->num_contacts = tally.num_contacts;
+        write_contacts(&s);
+    }
+    scree_narrow_phase_take_counts(narrow_phase, &tally);
     return status;
+}
+
+void scree_narrow_phase_again(scree_narrow_phase *narrow_phase, const scree_bodies *bodies,
+                              const scree_candidate_pair *pairs, int64_t num_pairs, scree_contact_list *list,
+                              scree_live *live)
+{
+    const search s = {narrow_phase, *bodies, pairs, num_pairs, list};
+    const struct scree_narrow_phase_buffers *b = narrow_phase->buffers;
+    place_spheres(&s); // its array is there
+    count_contacts(&s);
+    const scree_room_args room = {b->tally, b->max_kept, list->num_contacts, live};
+    scree_room_launch_on(narrow_phase->device, room, 1);
+    find_gaps(&s);
+    write_contacts(&s);
+}
+
+void scree_narrow_phase_take_counts(scree_narrow_phase *narrow_phase, const scree_pair_tally *tally)
+{
+    scree_narrow_phase_counts *counts = &narrow_phase->counts;
+    counts->num_without_normal = tally->num_without_normal;
+    counts->num_fallbacks = tally->num_fallbacks;
+    counts->num_inside = tally->num_inside;
+    counts->worst_residual = (scree_real)scree_maximum_value(tally->worst_residual);
 }

@@ -58,6 +58,7 @@ typedef struct scree_narrow_phase
     scree_work_classes classes; ///< of the pairs of meshes on a GPU, by their shapes; on the CPU one is enough
     scree_overlap_options options;
     scree_separation_use separation;
+    struct scree_pair_tally *tally;             ///< borrowed, where the arrays lie: for counting; NULL: its own
     scree_narrow_phase_counts counts;           ///< of the last search
     struct scree_narrow_phase_buffers *buffers; ///< internal
 } scree_narrow_phase;
@@ -75,6 +76,14 @@ void scree_narrow_phase_carry(scree_narrow_phase *narrow_phase, const scree_bodi
 /// Same list for any number of threads and on a GPU. SCREE_OUT_OF_MEMORY.
 scree_status scree_narrow_phase_find(scree_narrow_phase *narrow_phase, const scree_bodies *bodies,
                                      const scree_candidate_pair *pairs, int64_t num_pairs, scree_contact_list *list);
+/// The launches of scree_narrow_phase_find() for the same pairs as the last time, without waiting, to be recorded
+/// (device.h). There is room for list->num_contacts. When they are played and find no room, `live` halts the recording;
+/// otherwise it learns the number of contacts.
+void scree_narrow_phase_again(scree_narrow_phase *narrow_phase, const scree_bodies *bodies,
+                              const scree_candidate_pair *pairs, int64_t num_pairs, scree_contact_list *list,
+                              struct scree_live *live);
+/// Takes up what was counted, from a copy on the CPU.
+void scree_narrow_phase_take_counts(scree_narrow_phase *narrow_phase, const struct scree_pair_tally *tally);
 void scree_narrow_phase_destroy(scree_narrow_phase *narrow_phase);
 
 #endif

@@ -5,6 +5,7 @@
 
 #include "contact/overlap_pairs_kernel.h"
 #include "contact/pair_kinds_kernel.h"
+#include "contact/room_kernel.h"
 #include "core/launch_cpu.h"
 
 SCREE_DECLARE_LAUNCH(scree_pair_flag)       ///< over candidate pairs
@@ -16,5 +17,6 @@ SCREE_DECLARE_LAUNCH(scree_overlap_pairs)   ///< over slices
 SCREE_DECLARE_LAUNCH(scree_overlap_patches) ///< over slices
 SCREE_DECLARE_LAUNCH(scree_mesh_gap)        ///< over pairs of meshes
 SCREE_DECLARE_LAUNCH(scree_mesh_write)      ///< over pairs of meshes
+SCREE_DECLARE_LAUNCH(scree_room)            ///< over one index
 
 #endif

@@ -13,7 +13,7 @@
 
 scree_device_def scree_default_device_def(void)
 {
-    return (scree_device_def){.number = 0, .block = 128, .arena_bytes = (int64_t)256 << 20};
+    return (scree_device_def){.number = 0, .block = 128, .records = true, .arena_bytes = (int64_t)256 << 20};
 }
 
 scree_status scree_device_open(scree_device **device, const scree_device_def *def, scree_report *report)
@@ -129,4 +129,70 @@ void scree_device_zero(scree_device *device, void *memory, size_t num_bytes)
     if (num_bytes == 0) return;
     if (device == NULL) memset(memory, 0, num_bytes);
     else SCREE_CUDA_CALL(scree_cuda_zero(device, memory, num_bytes));
+}
+
+void scree_device_wait(scree_device *device)
+{
+    if (device != NULL) SCREE_CUDA_CALL(scree_cuda_wait(device));
+}
+
+void *scree_device_alloc_host(scree_device *device, size_t num_bytes)
+{
+    if (device == NULL) return calloc(1, num_bytes > 0 ? num_bytes : 1);
+    void *memory = NULL;
+    SCREE_CUDA_CALL(memory = scree_cuda_alloc_host(num_bytes > 0 ? num_bytes : 1));
+    return memory;
+}
+
+void scree_device_free_host(scree_device *device, void *memory)
+{
+    if (device == NULL) free(memory);
+    else if (memory != NULL) SCREE_CUDA_CALL(scree_cuda_free_host(device, memory));
+}
+
+void scree_device_send(scree_device *device, void *to, const void *from, size_t num_bytes)
+{
+    if (num_bytes == 0) return;
+    if (device == NULL) memcpy(to, from, num_bytes);
+    else SCREE_CUDA_CALL(scree_cuda_send(device, to, from, num_bytes));
+}
+
+void scree_device_fetch(scree_device *device, void *to, const void *from, size_t num_bytes)
+{
+    if (num_bytes == 0) return;
+    if (device == NULL) memcpy(to, from, num_bytes);
+    else SCREE_CUDA_CALL(scree_cuda_fetch(device, to, from, num_bytes));
+}
+
+bool scree_device_records(const scree_device *device)
+{
+    bool records = false;
+    if (device != NULL) SCREE_CUDA_CALL(records = scree_cuda_records(device));
+    return records;
+}
+
+void scree_device_record(scree_device *device, const scree_live *live)
+{
+    if (device != NULL) SCREE_CUDA_CALL(scree_cuda_record(device, live));
+    (void)live;
+}
+
+bool scree_device_end_record(scree_device *device, scree_recording **recording)
+{
+    bool is_done = false;
+    if (device != NULL) SCREE_CUDA_CALL(is_done = scree_cuda_end_record(device, recording));
+    (void)recording;
+    return is_done;
+}
+
+void scree_device_play(scree_device *device, const scree_recording *recording)
+{
+    if (device != NULL) SCREE_CUDA_CALL(scree_cuda_play(device, recording));
+    (void)recording;
+}
+
+void scree_device_forget(scree_device *device, scree_recording *recording)
+{
+    if (recording != NULL) SCREE_CUDA_CALL(scree_cuda_forget(device, recording));
+    (void)device;
 }

@@ -5,6 +5,7 @@
 #ifndef SCREE_DEVICE_H
 #define SCREE_DEVICE_H
 
+#include "core/live.h"
 #include "scree/base.h"
 
 #ifdef __cplusplus
@@ -17,8 +18,9 @@ extern "C"
     /// How a GPU is used. Start from scree_default_device_def().
     typedef struct scree_device_def
     {
-        int32_t number;      ///< of the GPU, from 0
-        int32_t block;       ///< threads of a block, 1 to 128; no result depends on it
+        int32_t number; ///< of the GPU, from 0
+        int32_t block;  ///< threads of a block, 1 to 128; no result depends on it
+        bool records;   ///< steps may be recorded and played; false: every call by itself, for tools that look at it
         int64_t arena_bytes; ///< taken at the start and whenever more is needed, > 0; 0: every array by itself, for
                              ///< tools that look for accesses beyond its ends
     } scree_device_def;
@@ -55,6 +57,31 @@ extern "C"
     /// Copies within the device; the two must not overlap.
     void scree_device_copy(scree_device *device, void *to, const void *from, size_t num_bytes);
     void scree_device_zero(scree_device *device, void *memory, size_t num_bytes);
+
+    /// Waits for all that was asked.
+    void scree_device_wait(scree_device *device);
+    /// Zeroed memory of the host for copies that nobody waits for. NULL: out of memory.
+    void *scree_device_alloc_host(scree_device *device, size_t num_bytes);
+    void scree_device_free_host(scree_device *device, void *memory);
+    /// Copies to the device, later: `from`, of scree_device_alloc_host(), must stay as it is until then.
+    void scree_device_send(scree_device *device, void *to, const void *from, size_t num_bytes);
+    /// Copies from the device, later, to memory of scree_device_alloc_host(): wait before you look.
+    void scree_device_fetch(scree_device *device, void *to, const void *from, size_t num_bytes);
+
+    /// Calls that were recorded, to be played with one call: a CUDA graph.
+    typedef struct scree_recording scree_recording;
+
+    /// May calls be recorded? Never on the CPU, which gains nothing by it.
+    bool scree_device_records(const scree_device *device);
+    /// From here on calls are kept instead of done: launches, scans, and scree_device_copy(), _zero(), _send(),
+    /// _fetch(). Nothing else may be called. When they are played, launches look up `live`, which lies on the device.
+    void scree_device_record(scree_device *device, const scree_live *live);
+    /// Ends that. The calls take the place of those of *recording, which is NULL to begin with. False: it cannot be
+    /// done, *recording is NULL, and scree_device_records() says no from now on.
+    bool scree_device_end_record(scree_device *device, scree_recording **recording);
+    void scree_device_play(scree_device *device, const scree_recording *recording);
+    /// NULL is allowed.
+    void scree_device_forget(scree_device *device, scree_recording *recording);
 
     /// Room for num_items of item_size bytes behind *array, growing by a quarter at least; contents are not kept.
     /// SCREE_OUT_OF_MEMORY leaves *array NULL and *max_items 0.

@@ -97,6 +97,7 @@ scree_status scree_cuda_open(scree_device **device, const scree_device_def *def,
     scree_device *d = (scree_device *)calloc(1, sizeof *d);
     if (d == NULL) return SCREE_OUT_OF_MEMORY;
     d->block = def->block;
+    d->records = def->records;
     d->arena_bytes = def->arena_bytes;
     d->concurrency = (int64_t)properties.multiProcessorCount * SCREE_CUDA_RESIDENT;
     memcpy(d->name, properties.name, sizeof d->name);
@@ -173,18 +174,34 @@ void scree_cuda_free(scree_device *device, void *memory)
     else scree_arena_give_back(&device->arena, memory);
 }
 
-void scree_cuda_write(scree_device *device, void *to, const void *from, size_t num_bytes)
+void scree_cuda_send(scree_device *device, void *to, const void *from, size_t num_bytes)
 {
     if (device->error != cudaSuccess) return;
     scree_cuda_note(device, cudaMemcpyAsync(to, from, num_bytes, cudaMemcpyHostToDevice, device->stream));
+}
+
+void scree_cuda_fetch(scree_device *device, void *to, const void *from, size_t num_bytes)
+{
+    if (device->error != cudaSuccess) return;
+    scree_cuda_note(device, cudaMemcpyAsync(to, from, num_bytes, cudaMemcpyDeviceToHost, device->stream));
+}
+
+void scree_cuda_wait(scree_device *device)
+{
+    if (device->error != cudaSuccess) return;
     scree_cuda_note(device, cudaStreamSynchronize(device->stream));
+}
+
+void scree_cuda_write(scree_device *device, void *to, const void *from, size_t num_bytes)
+{
+    scree_cuda_send(device, to, from, num_bytes);
+    scree_cuda_wait(device);
 }
 
 void scree_cuda_read(scree_device *device, void *to, const void *from, size_t num_bytes)
 {
-    if (device->error != cudaSuccess) return;
-    scree_cuda_note(device, cudaMemcpyAsync(to, from, num_bytes, cudaMemcpyDeviceToHost, device->stream));
-    scree_cuda_note(device, cudaStreamSynchronize(device->stream));
+    scree_cuda_fetch(device, to, from, num_bytes);
+    scree_cuda_wait(device);
 }
 
 void scree_cuda_copy(scree_device *device, void *to, const void *from, size_t num_bytes)
@@ -197,4 +214,72 @@ void scree_cuda_zero(scree_device *device, void *memory, size_t num_bytes)
 {
     if (device->error != cudaSuccess) return;
     scree_cuda_note(device, cudaMemsetAsync(memory, 0, num_bytes, device->stream));
+}
+
+void *scree_cuda_alloc_host(size_t num_bytes)
+{
+    void *memory = NULL;
+    if (cudaMallocHost(&memory, num_bytes) != cudaSuccess)
+    {
+        cudaGetLastError(); // told by the NULL that the caller gets
+        return NULL;
+    }
+    memset(memory, 0, num_bytes);
+    return memory;
+}
+
+void scree_cuda_free_host(scree_device *device, void *memory) { scree_cuda_note(device, cudaFreeHost(memory)); }
+
+// ---- recordings: CUDA graphs
+
+bool scree_cuda_records(const scree_device *device) { return device->records && device->error == cudaSuccess; }
+
+void scree_cuda_record(scree_device *device, const scree_live *live)
+{
+    // unsafe calls of this thread break the recording, those of others do not
+    scree_cuda_note(device, cudaStreamBeginCapture(device->stream, cudaStreamCaptureModeThreadLocal));
+    device->live = live;
+}
+
+/// The calls of a graph in place of those of *recording: what is ready to be launched is changed if it can be.
+static bool renew(cudaGraphExec_t *ready, cudaGraph_t graph)
+{
+    cudaGraphExecUpdateResultInfo info;
+    if (*ready != NULL && cudaGraphExecUpdate(*ready, graph, &info) == cudaSuccess) return true;
+    if (*ready != NULL) cudaGraphExecDestroy(*ready);
+    *ready = NULL;
+    cudaGetLastError(); // of the update
+    return cudaGraphInstantiate(ready, graph, 0) == cudaSuccess;
+}
+
+bool scree_cuda_end_record(scree_device *device, scree_recording **recording)
+{
+    cudaGraph_t graph = NULL;
+    cudaGraphExec_t ready = (cudaGraphExec_t)*recording;
+    const bool is_kept = cudaStreamEndCapture(device->stream, &graph) == cudaSuccess && device->error == cudaSuccess;
+    const bool is_done = is_kept && renew(&ready, graph);
+    if (graph != NULL) cudaGraphDestroy(graph);
+    device->live = NULL;
+    if (!is_done)
+    {
+        // nothing has been done yet, so nothing is lost: all goes on call by call
+        if (ready != NULL) cudaGraphExecDestroy(ready);
+        ready = NULL;
+        cudaGetLastError();
+        device->error = cudaSuccess;
+        device->records = false;
+    }
+    *recording = (scree_recording *)ready;
+    return is_done;
+}
+
+void scree_cuda_play(scree_device *device, const scree_recording *recording)
+{
+    if (device->error != cudaSuccess) return;
+    scree_cuda_note(device, cudaGraphLaunch((cudaGraphExec_t)recording, device->stream));
+}
+
+void scree_cuda_forget(scree_device *device, scree_recording *recording)
+{
+    scree_cuda_note(device, cudaGraphExecDestroy((cudaGraphExec_t)recording));
 }

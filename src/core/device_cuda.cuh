@@ -12,7 +12,9 @@ struct scree_device
 {
     cudaStream_t stream;
     int32_t block;
-    cudaError_t error; ///< the first one; nothing is done after it
+    cudaError_t error;      ///< the first one; nothing is done after it
+    bool records;           ///< and has not failed to
+    const scree_live *live; ///< of the recording under way; NULL: calls are done
     int64_t arena_bytes;
     int64_t concurrency; ///< threads that its multiprocessors hold, as far as registers of large kernels allow
     scree_arena arena;

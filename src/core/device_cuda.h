@@ -32,6 +32,17 @@ extern "C"
     void scree_cuda_copy(scree_device *device, void *to, const void *from, size_t num_bytes);
     void scree_cuda_zero(scree_device *device, void *memory, size_t num_bytes);
 
+    void scree_cuda_wait(scree_device *device);
+    void *scree_cuda_alloc_host(size_t num_bytes);
+    void scree_cuda_free_host(scree_device *device, void *memory);
+    void scree_cuda_send(scree_device *device, void *to, const void *from, size_t num_bytes);
+    void scree_cuda_fetch(scree_device *device, void *to, const void *from, size_t num_bytes);
+    bool scree_cuda_records(const scree_device *device);
+    void scree_cuda_record(scree_device *device, const scree_live *live);
+    bool scree_cuda_end_record(scree_device *device, scree_recording **recording);
+    void scree_cuda_play(scree_device *device, const scree_recording *recording);
+    void scree_cuda_forget(scree_device *device, scree_recording *recording);
+
     /// Scratch memory [bytes] that the sort of num_items takes.
     int64_t scree_cuda_sort_scratch(scree_device *device, int64_t num_items, bool has_values);
     /// scree_sort() on the device of the buffers.

@@ -6,9 +6,6 @@
 #include "dynamics/particles.h"
 #include "forces/moving_body.h"
 
-/// Walls of one launch: they travel with its arguments, so that nobody has to wait for a copy.
-#define SCREE_WALLS_AT_ONCE 8
-
 typedef struct scree_wall_motion
 {
     scree_pose pose;
@@ -25,11 +22,11 @@ typedef struct scree_body_arrays
 typedef struct scree_place_walls_args
 {
     scree_body_arrays bodies;
-    int64_t first; ///< body that the first of these walls is
-    scree_wall_motion walls[SCREE_WALLS_AT_ONCE];
+    int64_t first; ///< body that the first wall is
+    const scree_wall_motion *walls;
 } scree_place_walls_args;
 
-/// Wall k of this launch.
+/// Wall k.
 SCREE_FN void scree_place_walls_at(scree_place_walls_args a, int64_t k)
 {
     a.bodies.pose[a.first + k] = a.walls[k].pose;

@@ -8,9 +8,9 @@
 
 static int64_t count_blocks(int64_t num, int64_t size) { return (num + size - 1) / size; }
 
-/// Room for the contacts that there are, and for the sums over them.
-static scree_status reserve_contacts(scree_simulation *s)
+scree_status scree_reserve_contact_sums(scree_simulation *simulation)
 {
+    const scree_simulation *s = simulation;
     scree_step_buffers *b = s->buffers;
     const int64_t num = s->contacts.num_contacts, num_old = s->old_contacts.num_contacts;
     b->num_ended_blocks = count_blocks(num_old, SCREE_WORK_BLOCK);
@@ -23,6 +23,7 @@ static scree_status reserve_contacts(scree_simulation *s)
         status = scree_device_reserve(s->device, &b->is_continued, &b->max_old, num_old, sizeof *b->is_continued);
     if (status == SCREE_OK)
         status = scree_device_reserve(s->device, &b->work_sums, &b->max_work_sums, num_sums, sizeof *b->work_sums);
+    if (status == SCREE_OK) status = scree_reserve_wall_loads(simulation);
     return status;
 }
 
@@ -40,53 +41,44 @@ static void sum_up_contacts(const scree_simulation *s)
 
 scree_bodies scree_step_bodies(const scree_simulation *simulation)
 {
-    const scree_step_buffers *b = simulation->buffers;
+    const scree_simulation *s = simulation;
+    const scree_step_buffers *b = s->buffers;
     scree_bodies bodies;
     memset(&bodies, 0, sizeof bodies); // the gaps between its members too
-    bodies.shapes = simulation->shape_views;
+    bodies.shapes = s->shape_views;
     bodies.shape = b->shape;
     bodies.pose = b->pose;
     bodies.travel = b->travel;
-    bodies.num_bodies = simulation->particles.num_particles + simulation->num_walls;
-    bodies.num_steps = simulation->step - b->searched_step;
+    bodies.num_bodies = s->particles.num_particles + s->num_walls;
+    bodies.num_steps = s->step - b->searched_step;
     // each particle stays within its skin, together with the walls
-    bodies.reach = simulation->scene->solver.reuse_pairs ? (b->has_travel ? 2 : 1) * b->skin : 0;
+    bodies.reach = s->scene->solver.reuse_pairs ? (b->has_travel ? 2 : 1) * b->skin : 0;
     return bodies;
 }
 
-scree_status scree_update_contacts(scree_simulation *simulation)
+/// Which old contacts the present ones continue.
+static void match_contacts(const scree_simulation *s)
 {
-    scree_step_buffers *b = simulation->buffers;
-    scree_broad_phase *broad_phase = &simulation->broad_phase;
-
-    // the old list keeps its order by pair as long as no search comes between
-    scree_contact_list_pass_on(&simulation->contacts, &simulation->old_contacts);
-    const scree_contact_list old = simulation->old_contacts;
-
-    const scree_bodies bodies = scree_step_bodies(simulation);
-    scree_status status = scree_narrow_phase_find(&simulation->narrow_phase, &bodies, broad_phase->pairs,
-                                                  broad_phase->num_pairs, &simulation->contacts);
-    scree_stage_end(&simulation->clock, SCREE_STAGE_CONTACTS);
-    if (status == SCREE_OK) status = reserve_contacts(simulation);
-    if (status != SCREE_OK) return status;
-
+    const scree_step_buffers *b = s->buffers;
+    const scree_contact_list *contacts = &s->contacts, *old = &s->old_contacts;
     scree_history_match_args match;
-    match.pairs = broad_phase->pairs;
-    match.first_of_pair = simulation->contacts.first_of_pair;
-    match.old_first_of_pair = b->is_old_list_of_same_pairs ? old.first_of_pair : NULL;
-    match.old_bodies = old.bodies;
-    match.patch = simulation->contacts.patch;
-    match.old_patch = old.patch;
-    match.arm = simulation->contacts.arm;
-    match.old_arm = old.arm;
-    match.num_old = old.num_contacts;
+    match.pairs = s->broad_phase.pairs;
+    match.first_of_pair = contacts->first_of_pair;
+    match.old_first_of_pair = b->is_old_list_of_same_pairs ? old->first_of_pair : NULL;
+    match.old_bodies = old->bodies;
+    match.patch = contacts->patch;
+    match.old_patch = old->patch;
+    match.arm = contacts->arm;
+    match.old_arm = old->arm;
+    match.num_old = old->num_contacts;
     match.old_of_contact = b->old_of_contact;
     match.is_continued = b->is_continued;
-    scree_device_zero(simulation->device, b->is_continued, (size_t)old.num_contacts);
-    scree_history_match_launch_on(simulation->device, match, broad_phase->num_pairs);
-    b->is_old_list_of_same_pairs = true;
-    sum_up_contacts(simulation);
+    scree_device_zero(s->device, b->is_continued, (size_t)old->num_contacts);
+    scree_history_match_launch_on(s->device, match, s->broad_phase.num_pairs);
+}
 
+void scree_count_contacts(scree_simulation *simulation)
+{
     const scree_narrow_phase_counts *counts = &simulation->narrow_phase.counts;
     scree_counters *counters = &simulation->counters;
     counters->num_contacts = simulation->contacts.num_contacts;
@@ -94,8 +86,35 @@ scree_status scree_update_contacts(scree_simulation *simulation)
     counters->num_inside += counts->num_inside;
     counters->num_fallbacks += counts->num_fallbacks;
     counters->worst_residual = fmax(counters->worst_residual, (double)counts->worst_residual);
+}
+
+scree_status scree_update_contacts(scree_simulation *simulation)
+{
+    const scree_broad_phase *broad_phase = &simulation->broad_phase;
+    // the old list keeps its order by pair as long as no search comes between
+    scree_contact_list_pass_on(&simulation->contacts, &simulation->old_contacts);
+    const scree_bodies bodies = scree_step_bodies(simulation);
+    scree_status status = scree_narrow_phase_find(&simulation->narrow_phase, &bodies, broad_phase->pairs,
+                                                  broad_phase->num_pairs, &simulation->contacts);
+    scree_stage_end(&simulation->clock, SCREE_STAGE_CONTACTS);
+    if (status == SCREE_OK) status = scree_reserve_contact_sums(simulation);
+    if (status != SCREE_OK) return status;
+    match_contacts(simulation);
+    simulation->buffers->is_old_list_of_same_pairs = true;
+    sum_up_contacts(simulation);
+    scree_count_contacts(simulation);
     scree_stage_end(&simulation->clock, SCREE_STAGE_HISTORY);
     return SCREE_OK;
+}
+
+void scree_update_contacts_again(scree_simulation *simulation)
+{
+    const scree_broad_phase *broad_phase = &simulation->broad_phase;
+    const scree_bodies bodies = scree_step_bodies(simulation);
+    scree_narrow_phase_again(&simulation->narrow_phase, &bodies, broad_phase->pairs, broad_phase->num_pairs,
+                             &simulation->contacts, &simulation->buffers->board->live);
+    match_contacts(simulation);
+    sum_up_contacts(simulation);
 }
 
 scree_body_motion scree_step_body_motion(const scree_step_buffers *buffers)
@@ -107,7 +126,7 @@ scree_body_motion scree_step_body_motion(const scree_step_buffers *buffers)
     return motion;
 }
 
-scree_status scree_update_forces(scree_simulation *simulation)
+void scree_update_forces(scree_simulation *simulation)
 {
     const scree_step_buffers *b = simulation->buffers;
     scree_contact_force_args force;
@@ -133,22 +152,25 @@ scree_status scree_update_forces(scree_simulation *simulation)
     gather.torque = simulation->particles.torque;
     scree_gather_launch_on(simulation->device, gather, simulation->particles.num_particles);
     scree_stage_end(&simulation->clock, SCREE_STAGE_GATHER);
-    return SCREE_OK;
 }
 
-/// Adds the sums up, in groups of always the same ones, until one is left, and takes that to the tally.
+/// Adds the sums up, in groups of always the same ones, until one is left, which goes to the tally.
 static void reduce_work(const scree_simulation *s, int64_t num_parts)
 {
-    scree_work_reduce_args args = {s->buffers->work_sums, num_parts, s->buffers->work_sums + num_parts};
-    do {
-        const int64_t num_sums = count_blocks(args.num_parts, SCREE_SUM_FAN_IN);
+    scree_work_reduce_args args = {s->buffers->work_sums, num_parts, NULL, 1};
+    for (int64_t num_sums = 0; num_sums != 1;)
+    {
+        num_sums = args.num_parts > 1 ? count_blocks(args.num_parts, SCREE_SUM_FAN_IN) : 1;
+        args.sums = num_sums > 1 ? s->buffers->work_sums + num_parts : &s->buffers->tally->work;
         scree_work_reduce_launch_on(s->device, args, num_sums);
-        args = (scree_work_reduce_args){args.sums, num_sums, args.sums + num_sums};
-    } while (args.num_parts > 1);
-    if (num_parts > 0) scree_device_copy(s->device, &s->buffers->tally->work, args.parts, sizeof *args.parts);
+        args.parts = args.sums;
+        args.num_parts = num_sums;
+        args.per_part *= SCREE_SUM_FAN_IN;
+        num_parts += num_sums;
+    }
 }
 
-scree_status scree_account_work(scree_simulation *simulation)
+void scree_sum_work(scree_simulation *simulation)
 {
     const scree_step_buffers *b = simulation->buffers;
     const int64_t num_blocks = count_blocks(simulation->contacts.num_contacts, SCREE_WORK_BLOCK);
@@ -163,17 +185,19 @@ scree_status scree_account_work(scree_simulation *simulation)
     work.sums = b->work_sums + b->num_ended_blocks;
     scree_work_launch_on(simulation->device, work, num_blocks);
     reduce_work(simulation, b->num_ended_blocks + num_blocks);
-    scree_take_tally(simulation);
-    return SCREE_OK;
 }
 
-void scree_take_tally(scree_simulation *simulation)
+void scree_fetch_board(scree_simulation *simulation)
+{
+    const scree_step_buffers *b = simulation->buffers;
+    scree_device_fetch(simulation->device, b->board_here, b->board, scree_board_bytes(simulation->num_walls));
+    scree_device_zero(simulation->device, b->tally, sizeof *b->tally);
+}
+
+void scree_take_board(scree_simulation *simulation)
 {
     scree_step_buffers *b = simulation->buffers;
-    scree_step_tally tally = {0};
-    scree_device_read(simulation->device, &tally, b->tally, sizeof tally);
-    scree_device_zero(simulation->device, b->tally, sizeof tally);
-
+    const scree_step_tally tally = b->board_here->tally;
     scree_energies *energies = &simulation->energies;
     energies->damping += (double)tally.work.damping;
     energies->friction += (double)tally.work.friction;
@@ -187,4 +211,7 @@ void scree_take_tally(scree_simulation *simulation)
     counters->largest_indentation = fmax(counters->largest_indentation, scree_maximum_value(tally.largest_indentation));
     const int64_t num_from_unstable = (int64_t)scree_maximum_value(tally.num_from_unstable);
     b->first_unstable = num_from_unstable > 0 ? simulation->particles.num_particles - num_from_unstable : -1;
+    const scree_real *loads = scree_board_loads(b->board_here);
+    for (int32_t w = 0; w < simulation->num_walls; ++w)
+        if (b->moving_wall_here[w] >= 0) simulation->wall_loads.load[w] = (double)loads[b->moving_wall_here[w]];
 }

@@ -293,16 +293,20 @@ static scree_status start(scree_simulation *s, scree_report *report)
     s->narrow_phase.separation.finds = s->scene->solver.find_separation;
     s->narrow_phase.separation.remembers = s->scene->solver.remember_separation;
     s->narrow_phase.separation.bounds = s->scene->solver.bound_separation;
-    scree_place_walls(s, 0);
+    s->narrow_phase.tally = &s->buffers->board->pairs;
+    scree_move_walls(s, 0);
+    scree_place_walls(s);
     scree_place_particles(s);
     scree_status status = scree_check_walls(s, report);
-    if (status == SCREE_OK) status = scree_update_neighbours(s);
+    if (status == SCREE_OK) status = scree_search_neighbours(s);
     if (status == SCREE_OK) status = scree_update_contacts(s);
     if (status == SCREE_OK) status = scree_check_start(s, report);
-    if (status == SCREE_OK) status = scree_update_forces(s);
-    if (status == SCREE_OK) status = scree_update_wall_loads(s);
-    scree_take_tally(s);
-    return status;
+    if (status != SCREE_OK) return status;
+    scree_update_forces(s);
+    scree_sum_wall_loads(s);
+    scree_fetch_board(s);
+    scree_take_board(s);
+    return SCREE_OK;
 }
 
 static scree_status choose_time_step(scree_simulation *s, scree_report *report)
@@ -357,7 +361,8 @@ scree_status scree_simulation_create(scree_simulation **simulation, const scree_
 scree_status scree_simulation_restored(scree_simulation *simulation, scree_report *report)
 {
     // the contacts that were read become the old list; the next step finds its own and their history by key
-    scree_place_walls(simulation, scree_simulation_time(simulation));
+    scree_move_walls(simulation, scree_simulation_time(simulation));
+    scree_place_walls(simulation);
     scree_place_particles(simulation);
     simulation->buffers->has_pairs = false;
     simulation->buffers->is_old_list_of_same_pairs = false;

@@ -12,7 +12,8 @@ SCREE_DECLARE_LAUNCH(scree_predict)
 SCREE_DECLARE_LAUNCH(scree_correct)
 SCREE_DECLARE_LAUNCH(scree_boxes)
 SCREE_DECLARE_LAUNCH(scree_travel)      ///< over bodies
-SCREE_DECLARE_LAUNCH(scree_place_walls) ///< over the walls of its arguments
+SCREE_DECLARE_LAUNCH(scree_skin)        ///< over one index
+SCREE_DECLARE_LAUNCH(scree_place_walls) ///< over walls
 SCREE_DECLARE_LAUNCH(scree_place_particles)
 
 #endif

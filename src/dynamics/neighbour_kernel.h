@@ -4,6 +4,7 @@
 #define SCREE_NEIGHBOUR_KERNEL_H
 
 #include "core/atomic_kernel.h"
+#include "core/live.h"
 #include "polyhedra/shape.h"
 
 typedef struct scree_boxes_args
@@ -92,6 +93,31 @@ SCREE_FN void scree_travel_at(scree_travel_args a, int64_t i)
     if (!a.travel) return;
     a.travel[i] += scree_displacement(shape, a.last_pose + i, a.pose + i);
     a.last_pose[i] = a.pose[i];
+}
+
+/// [m] how far two bodies can have come closer to each other.
+SCREE_FN scree_real scree_moved_apart(scree_maximum particles_moved, scree_maximum walls_moved)
+{
+    return (scree_real)(scree_maximum_value(particles_moved) + scree_maximum_value(walls_moved));
+}
+
+/// Not a number asks for a search.
+SCREE_FN bool scree_leaves_skin(scree_real moved, scree_real skin) { return !(moved <= skin); }
+
+typedef struct scree_skin_args
+{
+    const scree_maximum *particles_moved; ///< [m]
+    const scree_maximum *walls_moved;     ///< [m]
+    scree_real skin;                      ///< [m]
+    scree_live *live;                     ///< out
+} scree_skin_args;
+
+/// Halts a recorded step that candidate pairs must be searched for. By the one index of the launch.
+SCREE_FN void scree_skin_at(scree_skin_args a, int64_t i)
+{
+    (void)i;
+    if (scree_leaves_skin(scree_moved_apart(*a.particles_moved, *a.walls_moved), a.skin))
+        a.live->halt = SCREE_HALT_SEARCH;
 }
 
 #endif

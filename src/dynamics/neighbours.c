@@ -21,36 +21,35 @@ static scree_travel_args travel_args(const scree_simulation *s)
     return args;
 }
 
-/// Adds the way of this step to the travels of all bodies, and finds how far two of them can have come closer to each
-/// other since the last search.
-static void follow_bodies(scree_simulation *s)
+void scree_follow_bodies(const scree_simulation *simulation)
 {
-    const scree_step_tally *tally = s->buffers->tally;
-    scree_travel_launch_on(s->device, travel_args(s), s->particles.num_particles + s->num_walls);
+    const int64_t num_bodies = simulation->particles.num_particles + simulation->num_walls;
+    scree_travel_launch_on(simulation->device, travel_args(simulation), num_bodies);
+}
+
+bool scree_have_walls_changed(const scree_simulation *simulation)
+{
+    for (int32_t w = 0; w < simulation->num_walls; ++w)
+        if (simulation->walls[w].is_present != simulation->buffers->wall_input[w].is_present) return true;
+    return false;
+}
+
+bool scree_is_search_due(scree_simulation *simulation)
+{
+    scree_step_buffers *b = simulation->buffers;
+    if (!b->has_pairs || !simulation->scene->solver.reuse_pairs) return true;
+    scree_follow_bodies(simulation);
+    if (scree_have_walls_changed(simulation) || b->is_search_asked) return true;
     scree_maximum moved[2] = {{0}, {0}};
-    scree_device_read(s->device, moved, &tally->particles_moved, sizeof moved);
-    s->buffers->moved = (scree_real)(scree_maximum_value(moved[0]) + scree_maximum_value(moved[1]));
+    scree_device_read(simulation->device, moved, &b->tally->particles_moved, sizeof moved);
+    b->moved = scree_moved_apart(moved[0], moved[1]);
+    return scree_leaves_skin(b->moved, b->skin);
 }
 
-static bool is_search_due(scree_simulation *s)
-{
-    const scree_step_buffers *b = s->buffers;
-    if (!b->has_pairs || !s->scene->solver.reuse_pairs) return true;
-    follow_bodies(s);
-    for (int32_t w = 0; w < s->num_walls; ++w)
-        if (s->walls[w].is_present != b->wall_input[w].is_present) return true;
-    if (b->is_search_asked) return true;
-    // not a number asks for a search
-    return !(b->moved <= b->skin);
-}
-
-scree_status scree_update_neighbours(scree_simulation *simulation)
+scree_status scree_search_neighbours(scree_simulation *simulation)
 {
     scree_step_buffers *b = simulation->buffers;
     scree_device *device = simulation->device;
-    const bool is_due = is_search_due(simulation);
-    scree_stage_end(&simulation->clock, SCREE_STAGE_TRAVEL);
-    if (!is_due) return SCREE_OK;
     scree_skin_adapt(simulation);
     const int64_t num_particles = simulation->particles.num_particles;
     const int64_t num_bodies = num_particles + simulation->num_walls;

@@ -114,10 +114,9 @@ static scree_status copy_buffers(scree_simulation *there, const scree_simulation
 #undef SCREE_COPY
     b->broad_phase_walls = scree_device_alloc(device, num_walls + 1, sizeof *b->broad_phase_walls);
     b->wall_input = calloc((size_t)num_walls + 1, sizeof *b->wall_input);
-    b->tally = scree_device_alloc(device, 1, sizeof *b->tally);
-    if (!is_complete || b->broad_phase_walls == NULL || b->wall_input == NULL || b->tally == NULL)
+    if (!is_complete || b->broad_phase_walls == NULL || b->wall_input == NULL ||
+        scree_step_board_create(b, num_walls) != SCREE_OK)
         return SCREE_OUT_OF_MEMORY;
-    scree_device_zero(device, b->tally, sizeof *b->tally);
     for (int64_t w = 0; w < num_walls; ++w)
         b->wall_input[w].tree = there->views_here[from->shape[num_particles + w]].tree;
     return scree_wall_axes_create(there);
@@ -155,6 +154,7 @@ static scree_status move(scree_simulation *there, scree_simulation *here)
     scree_status status = scree_particles_copy(device, &there->particles, &here->particles);
     if (status == SCREE_OK) status = copy_shapes(there, here);
     if (status == SCREE_OK) status = copy_buffers(there, here);
+    if (status == SCREE_OK) there->narrow_phase.tally = &there->buffers->board->pairs;
     if (status == SCREE_OK) status = scree_contact_list_copy(&there->contacts, &here->contacts);
     if (status == SCREE_OK)
     {

@@ -37,29 +37,48 @@ static scree_status check_contacts(const scree_simulation *s, scree_report *repo
 #endif
 }
 
-/// One step where the arrays are, but for averages.
+/// The step from where its recording halted, call by call.
+static scree_status advance_from(scree_simulation *s, scree_halt halt, scree_report *report)
+{
+    bool is_search_due = halt == SCREE_HALT_SEARCH;
+    if (halt == SCREE_HALT_START)
+    {
+        scree_predict_motion(s);
+        scree_place_walls(s);
+        scree_stage_end(&s->clock, SCREE_STAGE_PREDICT);
+        is_search_due = scree_is_search_due(s);
+        scree_stage_end(&s->clock, SCREE_STAGE_TRAVEL);
+    }
+    scree_status status = is_search_due ? scree_search_neighbours(s) : SCREE_OK;
+    if (status == SCREE_OK) status = scree_update_contacts(s);
+    if (status == SCREE_OK) status = check_contacts(s, report);
+    scree_stage_end(&s->clock, SCREE_STAGE_OTHER);
+    if (status != SCREE_OK) return status;
+    scree_update_forces(s);
+    scree_correct_motion(s);
+    scree_stage_end(&s->clock, SCREE_STAGE_CORRECT);
+    scree_sum_work(s);
+    scree_sum_wall_loads(s);
+    scree_fetch_board(s);
+    scree_device_wait(s->device);
+    scree_stage_end(&s->clock, SCREE_STAGE_WORK);
+    return SCREE_OK;
+}
+
+/// One step where the arrays are, but for averages. On the CPU nothing is recorded, and it starts at its start.
 static scree_status advance(scree_simulation *s, scree_report *report)
 {
     ++s->step;
     scree_stage_begin(&s->clock);
-    scree_predict_motion(s);
     // the walls follow their prescribed motion
-    scree_place_walls(s, (double)s->step * s->time_step);
-    scree_stage_end(&s->clock, SCREE_STAGE_PREDICT);
-    scree_status status = scree_update_neighbours(s);
-    if (status == SCREE_OK) status = scree_update_contacts(s);
-    if (status == SCREE_OK) status = check_contacts(s, report);
-    scree_stage_end(&s->clock, SCREE_STAGE_OTHER);
-    if (status == SCREE_OK) status = scree_update_forces(s);
-    if (status == SCREE_OK)
-    {
-        scree_correct_motion(s);
-        scree_stage_end(&s->clock, SCREE_STAGE_CORRECT);
-        status = scree_account_work(s);
-        scree_stage_end(&s->clock, SCREE_STAGE_WORK);
-        if (status == SCREE_OK) status = scree_account_wall_loads(s);
-    }
-    return status;
+    scree_move_walls(s, (double)s->step * s->time_step);
+    scree_halt halt = SCREE_HALT_START;
+    scree_status status = scree_play_step(s, &halt);
+    if (status == SCREE_OK && halt != SCREE_HALT_NONE) status = advance_from(s, halt, report);
+    if (status != SCREE_OK) return status;
+    scree_take_board(s);
+    scree_account_wall_loads(s);
+    return SCREE_OK;
 }
 
 /// What went wrong in the step of `s`, to the report. A failed device comes first: nothing it said counts.

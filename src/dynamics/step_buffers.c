@@ -29,6 +29,23 @@ static void *zeros(size_t num_bytes)
     return memory;
 }
 
+scree_status scree_step_board_create(scree_step_buffers *buffers, int64_t num_walls)
+{
+    scree_step_buffers *b = buffers;
+    const size_t num_bytes = scree_board_bytes(num_walls), num = (size_t)num_walls + 1;
+    b->board = scree_device_alloc(b->device, 1, num_bytes);
+    b->board_here = scree_device_alloc_host(b->device, num_bytes);
+    b->wall_motion = scree_device_alloc(b->device, (int64_t)num, sizeof *b->wall_motion);
+    b->wall_motion_here = scree_device_alloc_host(b->device, num * sizeof *b->wall_motion_here);
+    b->live_here = scree_device_alloc_host(b->device, sizeof *b->live_here);
+    if (b->board == NULL || b->board_here == NULL || b->wall_motion == NULL || b->wall_motion_here == NULL ||
+        b->live_here == NULL)
+        return SCREE_OUT_OF_MEMORY;
+    scree_device_zero(b->device, b->board, num_bytes);
+    b->tally = &b->board->tally;
+    return SCREE_OK;
+}
+
 scree_status scree_step_buffers_create(scree_simulation *simulation)
 {
     const size_t num_particles = (size_t)simulation->particles.num_particles;
@@ -52,9 +69,9 @@ scree_status scree_step_buffers_create(scree_simulation *simulation)
     SCREE_ALLOCATE(radii, num_particles)
     SCREE_ALLOCATE(broad_phase_walls, num_walls)
     SCREE_ALLOCATE(wall_input, num_walls)
-    SCREE_ALLOCATE(tally, 1)
 #undef SCREE_ALLOCATE
-    if (!is_complete) return SCREE_OUT_OF_MEMORY; // the simulation's destroy frees what there is
+    // the simulation's destroy frees what there is
+    if (!is_complete || scree_step_board_create(b, simulation->num_walls) != SCREE_OK) return SCREE_OUT_OF_MEMORY;
 
     for (size_t i = 0; i < num_particles; ++i)
     {
@@ -96,8 +113,13 @@ void scree_step_buffers_destroy(scree_simulation *simulation)
                             b->load_sums,
                             b->old_of_contact,
                             b->is_continued,
-                            b->tally};
+                            b->wall_motion,
+                            b->board};
     for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; ++k) scree_device_free(device, arrays[k]);
+    scree_forget_recordings(b);
+    scree_device_free_host(device, b->board_here);
+    scree_device_free_host(device, b->wall_motion_here);
+    scree_device_free_host(device, b->live_here);
     free(b->wall_input);
     free(b->moving_wall_here);
     free(b->wall_axes_here);
@@ -111,25 +133,27 @@ static scree_body_arrays body_arrays(const scree_step_buffers *b)
     return arrays;
 }
 
-void scree_place_walls(scree_simulation *simulation, double time)
+void scree_move_walls(scree_simulation *simulation, double time)
 {
-    scree_place_walls_args args = {0};
-    args.bodies = body_arrays(simulation->buffers);
-    for (int32_t first = 0; first < simulation->num_walls; first += SCREE_WALLS_AT_ONCE)
+    for (int32_t w = 0; w < simulation->num_walls; ++w)
     {
-        int32_t num = 0;
-        for (; num < SCREE_WALLS_AT_ONCE && first + num < simulation->num_walls; ++num)
-        {
-            scree_wall_state *wall = simulation->walls + first + num;
-            scree_wall_state_at(simulation->scene->walls + first + num, time, wall);
-            const scree_vec3 offset = scree_vec3_sub(wall->pose.position, wall->centre);
-            args.walls[num].pose = wall->pose;
-            args.walls[num].velocity = scree_vec3_add(wall->velocity, scree_vec3_cross(wall->angular_velocity, offset));
-            args.walls[num].angular_velocity = wall->angular_velocity;
-        }
-        args.first = simulation->particles.num_particles + first;
-        scree_place_walls_launch_on(simulation->device, args, num);
+        scree_wall_state *wall = simulation->walls + w;
+        scree_wall_motion *motion = simulation->buffers->wall_motion_here + w;
+        scree_wall_state_at(simulation->scene->walls + w, time, wall);
+        const scree_vec3 offset = scree_vec3_sub(wall->pose.position, wall->centre);
+        motion->pose = wall->pose;
+        motion->velocity = scree_vec3_add(wall->velocity, scree_vec3_cross(wall->angular_velocity, offset));
+        motion->angular_velocity = wall->angular_velocity;
     }
+}
+
+void scree_place_walls(scree_simulation *simulation)
+{
+    const scree_step_buffers *b = simulation->buffers;
+    const size_t num = (size_t)simulation->num_walls;
+    scree_device_send(simulation->device, b->wall_motion, b->wall_motion_here, num * sizeof *b->wall_motion);
+    const scree_place_walls_args args = {body_arrays(b), simulation->particles.num_particles, b->wall_motion};
+    scree_place_walls_launch_on(simulation->device, args, simulation->num_walls);
 }
 
 void scree_place_particles(scree_simulation *simulation)

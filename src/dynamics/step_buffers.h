@@ -3,6 +3,7 @@
 #ifndef SCREE_STEP_BUFFERS_H
 #define SCREE_STEP_BUFFERS_H
 
+#include "dynamics/body_kernel.h"
 #include "dynamics/state.h"
 #include "dynamics/step_tally.h"
 #include "forces/forces.h"
@@ -35,6 +36,10 @@ typedef struct scree_step_buffers
     bool has_pairs;                            ///< false: search before the next step, and nothing is known of pairs
     bool is_search_asked;                      ///< search before the next step, though the skin may be wide enough
 
+    // walls
+    scree_wall_motion *wall_motion;      ///< (num_walls)
+    scree_wall_motion *wall_motion_here; ///< the same on the CPU, of the present step
+
     // moving walls
     int32_t *moving_wall;       ///< (num_walls) index among the moving ones, or -1
     scree_wall_axis *wall_axes; ///< (num_moving_walls)
@@ -54,37 +59,76 @@ typedef struct scree_step_buffers
     int64_t max_work_sums;
     int64_t num_ended_blocks;
 
-    scree_step_tally *tally;
+    scree_step_board *board;
+    scree_step_board *board_here; ///< a copy on the CPU, of the end of the last step
+    scree_step_tally *tally;      ///< of the board
+
+    // steps that are recorded, see recorded_step.c
+    scree_live *live_here;                   ///< on the CPU, what a recording starts from
+    scree_recording *recordings[2];          ///< of even and of odd steps, for the two contact lists change places
+    bool is_recorded[2];                     ///< as things are now
+    int64_t max_recorded;                    ///< contacts that they have room for
+    int64_t num_halts[SCREE_HALT_START + 1]; ///< steps so far by where they went on from call by call
+
     int64_t first_unstable; ///< particle that was not finite at the end of the last step, or -1; on the CPU
 } scree_step_buffers;
 
 /// Allocates the arrays over bodies; num_walls from the simulation.
 scree_status scree_step_buffers_create(scree_simulation *simulation);
+/// The board, and what is sent to the device in each step.
+scree_status scree_step_board_create(scree_step_buffers *buffers, int64_t num_walls);
 /// Axes of the moving walls.
 scree_status scree_wall_axes_create(scree_simulation *simulation);
 void scree_step_buffers_destroy(scree_simulation *simulation);
 
-// The stages of a step, in their order.
+// The stages of a step, in their order. All but scree_is_search_due() and scree_update_contacts() only ask for their
+// work and do not wait.
 
+/// Poses and velocities of the walls at `time`, on the CPU.
+void scree_move_walls(scree_simulation *simulation, double time);
 /// First half kick and drift of the particles.
 void scree_predict_motion(scree_simulation *simulation);
-/// Poses and velocities of the walls at `time`, to the wall states and the body arrays.
-void scree_place_walls(scree_simulation *simulation, double time);
+/// Poses and velocities of the walls to the body arrays.
+void scree_place_walls(scree_simulation *simulation);
 /// Poses and velocities of the particles, as they are, to the body arrays.
 void scree_place_particles(scree_simulation *simulation);
 
-/// Searches candidate pairs if some body may have left its skin since the last search.
-scree_status scree_update_neighbours(scree_simulation *simulation);
+/// Has a wall come or gone since the last search?
+bool scree_have_walls_changed(const scree_simulation *simulation);
+/// The way of this step to the travels of all bodies, and how far they have moved since the last search to the tally.
+void scree_follow_bodies(const scree_simulation *simulation);
+/// Follows the bodies. May one have left its skin since the last search?
+bool scree_is_search_due(scree_simulation *simulation);
+/// Candidate pairs of the present poses.
+scree_status scree_search_neighbours(scree_simulation *simulation);
 /// Contacts of the present poses and which old ones they continue; old ones that ended leave their energy to the sums.
 scree_status scree_update_contacts(scree_simulation *simulation);
 /// Forces of the contacts and of gravity on the particles.
-scree_status scree_update_forces(scree_simulation *simulation);
+void scree_update_forces(scree_simulation *simulation);
 /// Second half kick.
 void scree_correct_motion(scree_simulation *simulation);
-/// Work of the contacts over the step just done. Waits for all that was asked before.
-scree_status scree_account_work(scree_simulation *simulation);
-/// Takes up what the kernels have counted so far.
-void scree_take_tally(scree_simulation *simulation);
+/// Work of the contacts over the step just done.
+void scree_sum_work(scree_simulation *simulation);
+/// Loads of the moving walls by the present contacts; there is room for the sums.
+void scree_sum_wall_loads(scree_simulation *simulation);
+/// A copy of the board to the CPU.
+void scree_fetch_board(scree_simulation *simulation);
+/// Takes up what the kernels have left there, once it has come.
+void scree_take_board(scree_simulation *simulation);
+
+// What recorded steps share with the others.
+
+/// Room for the sums over the contacts that touch walls.
+scree_status scree_reserve_wall_loads(scree_simulation *simulation);
+/// Room for the contacts that the two lists have, and for the sums over them.
+scree_status scree_reserve_contact_sums(scree_simulation *simulation);
+/// scree_update_contacts() for the candidate pairs of the step before, after the lists have changed places.
+void scree_update_contacts_again(scree_simulation *simulation);
+/// What was found of the contacts to the counters.
+void scree_count_contacts(scree_simulation *simulation);
+/// Does the step as far as it can be played on a GPU. *halt: where it must go on from, or SCREE_HALT_NONE.
+scree_status scree_play_step(scree_simulation *simulation, scree_halt *halt);
+void scree_forget_recordings(scree_step_buffers *buffers);
 
 /// The bodies as the narrow phase sees them.
 scree_bodies scree_step_bodies(const scree_simulation *simulation);

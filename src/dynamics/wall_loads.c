@@ -64,17 +64,25 @@ static double rate_of(const scree_simulation *s, int32_t wall, const scree_wall_
     return (double)scree_vec3_dot(axis->is_rotating ? state->angular_velocity : state->velocity, axis->direction);
 }
 
-/// Loads of all contacts, summed in groups of always the same ones; NULL: out of memory.
-static const scree_real *sum_loads(scree_simulation *s)
-{
-    scree_step_buffers *b = s->buffers;
-    const int64_t num_moving = b->num_moving_walls;
-    int64_t num_parts = (s->contacts.num_contacts + SCREE_WALL_LOAD_BLOCK - 1) / SCREE_WALL_LOAD_BLOCK;
-    // sums of sums, down to one, take less than a 255th of them
-    const int64_t num_sums = (num_parts + num_parts / (SCREE_SUM_FAN_IN - 1) + 8) * num_moving;
-    if (scree_device_reserve(s->device, &b->load_sums, &b->max_load_sums, num_sums, sizeof *b->load_sums) != SCREE_OK)
-        return NULL;
+static int64_t count_blocks(int64_t num, int64_t size) { return (num + size - 1) / size; }
 
+scree_status scree_reserve_wall_loads(scree_simulation *simulation)
+{
+    scree_step_buffers *b = simulation->buffers;
+    if (b->num_moving_walls == 0) return SCREE_OK;
+    const int64_t num_parts = count_blocks(simulation->contacts.num_contacts, SCREE_WALL_LOAD_BLOCK);
+    // sums of sums, down to one, take less than a 255th of them
+    const int64_t num_sums = (num_parts + num_parts / (SCREE_SUM_FAN_IN - 1) + 8) * b->num_moving_walls;
+    return scree_device_reserve(simulation->device, &b->load_sums, &b->max_load_sums, num_sums, sizeof *b->load_sums);
+}
+
+void scree_sum_wall_loads(scree_simulation *simulation)
+{
+    const scree_simulation *s = simulation;
+    const scree_step_buffers *b = s->buffers;
+    const int64_t num_moving = b->num_moving_walls;
+    if (num_moving == 0) return;
+    int64_t num_parts = count_blocks(s->contacts.num_contacts, SCREE_WALL_LOAD_BLOCK);
     scree_wall_load_args args;
     args.contacts = scree_contact_list_view(&s->contacts);
     args.pose = b->pose;
@@ -85,33 +93,18 @@ static const scree_real *sum_loads(scree_simulation *s)
     args.sums = b->load_sums;
     scree_wall_load_launch_on(s->device, args, num_parts);
 
-    scree_real *parts = b->load_sums;
-    do {
-        const scree_wall_load_reduce_args reduce = {parts, num_parts, num_moving, parts + num_parts * num_moving};
-        const int64_t num = num_parts > 0 ? (num_parts + SCREE_SUM_FAN_IN - 1) / SCREE_SUM_FAN_IN : 1;
-        scree_wall_load_reduce_launch_on(s->device, reduce, num * num_moving);
-        parts = reduce.sums;
-        num_parts = num;
-    } while (num_parts > 1);
-    return parts;
-}
-
-scree_status scree_update_wall_loads(scree_simulation *simulation)
-{
-    const scree_step_buffers *b = simulation->buffers;
-    if (b->num_moving_walls == 0) return SCREE_OK;
-    const scree_real *sums = sum_loads(simulation);
-    scree_real *loads = calloc((size_t)b->num_moving_walls, sizeof *loads);
-    if (sums == NULL || loads == NULL)
+    // in groups of always the same ones, until one is left
+    scree_wall_load_reduce_args reduce = {b->load_sums, num_parts, num_moving, NULL, 1};
+    for (int64_t num_sums = 0; num_sums != 1;)
     {
-        free(loads);
-        return SCREE_OUT_OF_MEMORY;
+        num_sums = reduce.num_parts > 1 ? count_blocks(reduce.num_parts, SCREE_SUM_FAN_IN) : 1;
+        reduce.sums = num_sums > 1 ? b->load_sums + num_parts * num_moving : scree_board_loads(b->board);
+        scree_wall_load_reduce_launch_on(s->device, reduce, num_sums * num_moving);
+        reduce.parts = reduce.sums;
+        reduce.num_parts = num_sums;
+        reduce.per_part *= SCREE_SUM_FAN_IN;
+        num_parts += num_sums;
     }
-    scree_device_read(simulation->device, loads, sums, (size_t)b->num_moving_walls * sizeof *loads);
-    for (int32_t w = 0; w < simulation->num_walls; ++w)
-        if (b->moving_wall_here[w] >= 0) simulation->wall_loads.load[w] = (double)loads[b->moving_wall_here[w]];
-    free(loads);
-    return SCREE_OK;
 }
 
 /// Closes a revolution that this step has completed.
@@ -129,18 +122,16 @@ static void mark_revolution(scree_simulation *s, int32_t w)
     loads->marked_step[w] = s->step;
 }
 
-scree_status scree_account_wall_loads(scree_simulation *simulation)
+void scree_account_wall_loads(scree_simulation *simulation)
 {
     const scree_step_buffers *b = simulation->buffers;
-    const scree_status status = scree_update_wall_loads(simulation);
-    for (int32_t w = 0; status == SCREE_OK && w < simulation->num_walls; ++w)
+    for (int32_t w = 0; w < simulation->num_walls; ++w)
     {
         if (b->moving_wall_here[w] < 0) continue;
         const double rate = rate_of(simulation, w, b->wall_axes_here + b->moving_wall_here[w]);
         simulation->wall_loads.work[w] += simulation->wall_loads.load[w] * rate * simulation->time_step;
         mark_revolution(simulation, w);
     }
-    return status;
 }
 
 scree_status scree_wall_axes_create(scree_simulation *simulation)

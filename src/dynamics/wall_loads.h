@@ -23,9 +23,7 @@ void scree_wall_loads_destroy(scree_wall_loads *loads);
 /// Whole revolutions that a wall has made at `time`; 0 if it does not rotate.
 int64_t scree_wall_revolutions(const scree_wall_def *def, double time);
 
-/// Loads of the present contacts.
-scree_status scree_update_wall_loads(scree_simulation *simulation);
-/// Loads, and the work of the step just done.
-scree_status scree_account_wall_loads(scree_simulation *simulation);
+/// Work of the step just done, by the present loads.
+void scree_account_wall_loads(scree_simulation *simulation);
 
 #endif

@@ -13,7 +13,8 @@ typedef struct scree_work_reduce_args
 {
     const scree_work_sums *parts; ///< (num_parts)
     int64_t num_parts;
-    scree_work_sums *sums; ///< (one for SCREE_SUM_FAN_IN parts each) out
+    scree_work_sums *sums; ///< (one for SCREE_SUM_FAN_IN parts each, at least one) out
+    int64_t per_part;      ///< blocks of contacts that a part is the sum of
 } scree_work_reduce_args;
 
 /// Parts k SCREE_SUM_FAN_IN and on.
@@ -75,7 +76,8 @@ typedef struct scree_wall_load_reduce_args
     const scree_real *parts; ///< (num_parts, num_moving)
     int64_t num_parts;
     int64_t num_moving;
-    scree_real *sums; ///< (one for SCREE_SUM_FAN_IN parts each, num_moving) out
+    scree_real *sums; ///< (one for SCREE_SUM_FAN_IN parts each, at least one, num_moving) out
+    int64_t per_part; ///< blocks of contacts that a part is the sum of
 } scree_wall_load_reduce_args;
 
 /// Moving wall k % num_moving of sum k / num_moving.

@@ -30,7 +30,7 @@ while read -r file; do
     forbid "$file" '\bfmaf?\(' "only src/core/exact_arith.h calls fma()"
 done < <(grep -rlw 'fmaf\?' src | LC_ALL=C sort)
 
-launches() { find src -name "$1" -exec cat {} + | sed -n 's/^SCREE_DEFINE_\(TEAM_\|SUM_\)\?LAUNCH\(_[A-Z]*\)\?(\([a-z0-9_]*\)).*/\3/p' | sort -u; }
+launches() { find src -name "$1" -exec cat {} + | sed -n 's/^SCREE_DEFINE_\(TEAM_\|SUM_\)\?LAUNCH\(_[A-Z_]*\)\?(\([a-z0-9_]*\)[,)].*/\3/p' | sort -u; }
 comm -23 <(launches '*.c') <(launches '*.cu') | sed 's/$/: has an OpenMP loop but no grid in a .cu file/' >>"$scratch/faults"
 launches '*.cu' | while read -r kernel; do
     grep -qE "\($kernel\)|, $kernel,|${kernel}_launch_cuda\(" tests/cuda_on_cpu/*.cu ||

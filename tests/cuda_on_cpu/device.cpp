@@ -13,6 +13,7 @@
 #include <map>
 #include <string>
 #include <sys/mman.h>
+#include <vector>
 
 #include "sanitizers.h"
 #include "settings.h"
@@ -28,6 +29,13 @@ namespace
 constexpr size_t page_bytes = 4096;
 constexpr size_t alignment = 256; ///< that cudaMalloc promises
 
+/// A call that was captured.
+struct graph_node
+{
+    node_kind kind;
+    std::function<void()> work;
+};
+
 struct allocation
 {
     size_t num_bytes;
@@ -35,10 +43,22 @@ struct allocation
     size_t map_bytes;
 };
 
+enum class capture_state
+{
+    none,
+    active,
+    broken ///< by a call that cannot be captured
+};
+
 /// The one device there is.
 struct device
 {
     std::map<char *, allocation> allocations;
+    std::map<const char *, size_t> pinned; ///< host memory and its bytes
+    cudaStream_t captured = nullptr;       ///< the stream whose calls are kept instead of done
+    capture_state capture = capture_state::none;
+    std::vector<graph_node> nodes; ///< kept so far
+    bool refuses_graphs = false;
     std::deque<std::function<void()>> queue;
     size_t num_bytes = 0;
     long num_launches = 0;
@@ -95,6 +115,38 @@ void check_kind(const void *to, const void *from, cudaMemcpyKind kind)
     if (is_of_device(to) != to_device || is_of_device(from) != from_device)
         fail("a copy of kind %d to %s memory from %s memory", static_cast<int>(kind),
              is_of_device(to) ? "device" : "host", is_of_device(from) ? "device" : "host");
+}
+
+/// A call that cannot be captured spoils the capture under way.
+cudaError_t break_capture(cudaError_t error)
+{
+    the_device().capture = capture_state::broken;
+    return remember(error);
+}
+
+/// For calls that wait, or that change what memory there is.
+bool is_capturing() { return the_device().capture != capture_state::none; }
+
+/// A launch as it is queued: the one that is to fail does.
+std::function<void()> count_launch(std::function<void()> run)
+{
+    if (++the_device().num_launches != settings().fault_at) return run;
+    return []
+    {
+        the_device().is_lost = true;
+        the_device().last_error = cudaErrorIllegalAddress;
+    };
+}
+
+/// Host memory that a captured copy may lie in.
+bool is_pinned(const void *address, size_t num_bytes)
+{
+    const char *byte = static_cast<const char *>(address);
+    const auto &pinned = the_device().pinned;
+    auto after = pinned.upper_bound(byte);
+    if (after == pinned.begin()) return false;
+    const auto before = std::prev(after);
+    return byte + num_bytes <= before->first + before->second;
 }
 
 long number_from(const char *variable, long otherwise)
@@ -158,10 +210,21 @@ void refuse_host_addresses(const char *what, const void *bytes, size_t num_bytes
     }
 }
 
-void enqueue(std::function<void()> work)
+int enqueue(node_kind kind, std::function<void()> work, cudaStream_t stream)
 {
     if (current != nullptr) fail("a kernel uses a function of the host");
-    the_device().queue.push_back(std::move(work));
+    device &d = the_device();
+    if (d.capture == capture_state::none || (stream != d.captured && stream != nullptr))
+    {
+        if (kind == node_kind::kernel) work = count_launch(std::move(work));
+        d.queue.push_back(std::move(work));
+        return cudaSuccess;
+    }
+    // the stream without a name waits for all others, which a captured one cannot
+    if (stream == nullptr) return break_capture(cudaErrorStreamCaptureImplicit);
+    if (d.capture == capture_state::broken) return remember(cudaErrorStreamCaptureInvalidated);
+    d.nodes.push_back({kind, std::move(work)});
+    return cudaSuccess;
 }
 
 void drain()
@@ -180,7 +243,9 @@ void drain()
 
 void allow_allocations(long num) { the_device().num_left = num; }
 
-int launch(const char *kernel, const launch_shape &shape, std::function<void()> body)
+void refuse_graphs(bool refuses) { the_device().refuses_graphs = refuses; }
+
+int launch(const char *kernel, const launch_shape &shape, std::function<void()> body, cudaStream_t stream)
 {
     device &d = the_device();
     const dim3 g = shape.grid, b = shape.block;
@@ -189,15 +254,8 @@ int launch(const char *kernel, const launch_shape &shape, std::function<void()> 
         g.y > 65535 || g.z > 65535 || shape.dynamic_shared_bytes > 48 * 1024)
         return remember(cudaErrorInvalidConfiguration);
     if (d.is_lost) return remember(cudaErrorIllegalAddress);
-    const bool has_fault = ++d.num_launches == settings().fault_at;
-    enqueue(
-        [=, body = std::move(body)]
-        {
-            if (!has_fault) return run_grid(kernel, shape, body);
-            the_device().is_lost = true;
-            the_device().last_error = cudaErrorIllegalAddress;
-        });
-    return cudaSuccess;
+    return enqueue(
+        node_kind::kernel, [=, body = std::move(body)] { run_grid(kernel, shape, body); }, stream);
 }
 
 } // namespace cuda_on_cpu
@@ -231,6 +289,19 @@ const char *cudaGetErrorString(cudaError_t error)
         return "no CUDA-capable device is detected";
     case cudaErrorNoKernelImageForDevice:
         return "no kernel image is available for execution on the device";
+    case cudaErrorIllegalState:
+        return "the operation cannot be performed in the present state";
+    case cudaErrorStreamCaptureUnsupported:
+        return "operation not permitted when stream is capturing";
+    case cudaErrorStreamCaptureInvalidated:
+        return "operation failed due to a previous error during capture";
+    case cudaErrorStreamCaptureUnmatched:
+        return "capture was not initiated in this stream";
+    case cudaErrorStreamCaptureImplicit:
+        return "operation would make the legacy stream depend on a capturing blocking stream";
+    case cudaErrorGraphExecUpdateFailure:
+        return "the graph update was not performed because it included changes which violated constraints specific to "
+               "instantiated graph update";
     case cudaErrorIllegalAddress:
         return "an illegal memory access was encountered";
     }
@@ -278,21 +349,27 @@ cudaError_t cudaGetDeviceProperties(cudaDeviceProp *properties, int device)
 
 cudaError_t cudaDeviceSynchronize()
 {
+    if (is_capturing()) return break_capture(cudaErrorStreamCaptureUnsupported);
     drain();
     return the_device().is_lost ? remember(cudaErrorIllegalAddress) : cudaSuccess;
 }
 
 cudaError_t cudaStreamCreate(cudaStream_t *stream)
 {
-    *stream = nullptr;
+    *stream = new cuda_on_cpu_stream;
     return cudaSuccess;
 }
-cudaError_t cudaStreamDestroy(cudaStream_t) { return cudaDeviceSynchronize(); }
+cudaError_t cudaStreamDestroy(cudaStream_t stream)
+{
+    delete stream;
+    return cudaDeviceSynchronize();
+}
 cudaError_t cudaStreamSynchronize(cudaStream_t) { return cudaDeviceSynchronize(); }
 
 cudaError_t cudaMalloc(void **address, size_t num_bytes)
 {
     device &d = the_device();
+    if (is_capturing()) return break_capture(cudaErrorStreamCaptureUnsupported);
     if (num_bytes == 0 || d.num_left == 0 || d.num_bytes + num_bytes > settings().memory)
         return remember(cudaErrorMemoryAllocation);
     if (d.num_left > 0) --d.num_left;
@@ -316,6 +393,7 @@ cudaError_t cudaMalloc(void **address, size_t num_bytes)
 cudaError_t cudaFree(void *address)
 {
     if (address == nullptr) return cudaSuccess;
+    if (is_capturing()) return break_capture(cudaErrorStreamCaptureUnsupported);
     drain();
     device &d = the_device();
     const auto found = d.allocations.find(static_cast<char *>(address));
@@ -334,21 +412,49 @@ cudaError_t cudaMemGetInfo(size_t *num_free, size_t *num_total)
     return cudaSuccess;
 }
 
-cudaError_t cudaMemcpyAsync(void *to, const void *from, size_t num_bytes, cudaMemcpyKind kind, cudaStream_t)
+cudaError_t cudaMallocHost(void **address, size_t num_bytes)
+{
+    if (is_capturing()) return break_capture(cudaErrorStreamCaptureUnsupported);
+    *address = std::calloc(1, num_bytes);
+    if (*address == nullptr) return remember(cudaErrorMemoryAllocation);
+    the_device().pinned[static_cast<char *>(*address)] = num_bytes;
+    return cudaSuccess;
+}
+
+cudaError_t cudaFreeHost(void *address)
+{
+    if (address == nullptr) return cudaSuccess;
+    if (is_capturing()) return break_capture(cudaErrorStreamCaptureUnsupported);
+    drain();
+    if (the_device().pinned.erase(static_cast<char *>(address)) != 1)
+        fail("cudaFreeHost of %p, which is not pinned", address);
+    std::free(address);
+    return cudaSuccess;
+}
+
+cudaError_t cudaMemcpyAsync(void *to, const void *from, size_t num_bytes, cudaMemcpyKind kind, cudaStream_t stream)
 {
     if (num_bytes == 0) return cudaSuccess;
     check_kind(to, from, kind);
-    enqueue(
+    const void *here = kind == cudaMemcpyHostToDevice ? from : kind == cudaMemcpyDeviceToHost ? to : nullptr;
+    // memory that is not pinned goes through a buffer of the driver, and the host waits for it
+    if (is_capturing() && stream == the_device().captured && here != nullptr && !is_pinned(here, num_bytes))
+        return break_capture(cudaErrorStreamCaptureUnsupported);
+    const int error = enqueue(
+        node_kind::copy,
         [=]
         {
             if (kind == cudaMemcpyHostToDevice) refuse_host_addresses("a copy to the device", from, num_bytes);
             std::memcpy(to, from, num_bytes);
-        });
+        },
+        stream);
+    if (error != cudaSuccess) return static_cast<cudaError_t>(error);
     return the_device().is_lost ? remember(cudaErrorIllegalAddress) : cudaSuccess;
 }
 
 cudaError_t cudaMemcpy(void *to, const void *from, size_t num_bytes, cudaMemcpyKind kind)
 {
+    if (is_capturing()) return break_capture(cudaErrorStreamCaptureImplicit);
     drain();
     if (num_bytes == 0) return cudaSuccess;
     if (the_device().is_lost) return remember(cudaErrorIllegalAddress);
@@ -364,15 +470,91 @@ cudaError_t cudaMemcpy(void *to, const void *from, size_t num_bytes, cudaMemcpyK
     return cudaSuccess;
 }
 
-cudaError_t cudaMemsetAsync(void *address, int value, size_t num_bytes, cudaStream_t)
+cudaError_t cudaMemsetAsync(void *address, int value, size_t num_bytes, cudaStream_t stream)
 {
     if (num_bytes == 0) return cudaSuccess;
     if (!is_of_device(address)) fail("cudaMemset of host memory");
-    enqueue([=] { std::memset(address, value, num_bytes); });
+    const int error = enqueue(
+        node_kind::set, [=] { std::memset(address, value, num_bytes); }, stream);
+    if (error != cudaSuccess) return static_cast<cudaError_t>(error);
     return the_device().is_lost ? remember(cudaErrorIllegalAddress) : cudaSuccess;
 }
 
 cudaError_t cudaMemset(void *address, int value, size_t num_bytes)
 {
     return cudaMemsetAsync(address, value, num_bytes, nullptr); // which may return before it is done
+}
+
+// ---- graphs
+
+struct cuda_on_cpu_graph
+{
+    std::vector<graph_node> nodes;
+};
+
+cudaError_t cudaStreamBeginCapture(cudaStream_t stream, cudaStreamCaptureMode)
+{
+    device &d = the_device();
+    if (stream == nullptr) return remember(cudaErrorStreamCaptureUnsupported);
+    if (is_capturing()) return break_capture(cudaErrorIllegalState);
+    d.captured = stream;
+    d.capture = capture_state::active;
+    d.nodes.clear();
+    return cudaSuccess;
+}
+
+cudaError_t cudaStreamEndCapture(cudaStream_t stream, cudaGraph_t *graph)
+{
+    device &d = the_device();
+    *graph = nullptr;
+    if (!is_capturing()) return remember(cudaErrorIllegalState);
+    if (stream != d.captured) return remember(cudaErrorStreamCaptureUnmatched);
+    const bool is_whole = d.capture == capture_state::active;
+    d.capture = capture_state::none;
+    d.captured = nullptr;
+    if (!is_whole) return remember(cudaErrorStreamCaptureInvalidated);
+    *graph = new cuda_on_cpu_graph{std::move(d.nodes)};
+    d.nodes.clear();
+    return cudaSuccess;
+}
+
+cudaError_t cudaGraphInstantiate(cudaGraphExec_t *made, cudaGraph_t graph, unsigned long long)
+{
+    *made = nullptr;
+    if (the_device().refuses_graphs) return remember(cudaErrorMemoryAllocation);
+    *made = new cuda_on_cpu_graph(*graph);
+    return cudaSuccess;
+}
+
+cudaError_t cudaGraphExecUpdate(cudaGraphExec_t made, cudaGraph_t graph, cudaGraphExecUpdateResultInfo *info)
+{
+    // the same kinds of nodes in the same order may get other arguments
+    bool is_alike = made->nodes.size() == graph->nodes.size();
+    for (size_t k = 0; is_alike && k < graph->nodes.size(); ++k) is_alike = made->nodes[k].kind == graph->nodes[k].kind;
+    *info = cudaGraphExecUpdateResultInfo{};
+    info->result = is_alike ? cudaGraphExecUpdateSuccess : cudaGraphExecUpdateErrorTopologyChanged;
+    if (!is_alike) return remember(cudaErrorGraphExecUpdateFailure);
+    made->nodes = graph->nodes;
+    return cudaSuccess;
+}
+
+cudaError_t cudaGraphLaunch(cudaGraphExec_t made, cudaStream_t stream)
+{
+    if (is_capturing()) return break_capture(cudaErrorStreamCaptureUnsupported);
+    if (the_device().is_lost) return remember(cudaErrorIllegalAddress);
+    for (const graph_node &node : made->nodes) enqueue(node.kind, node.work, stream);
+    return cudaSuccess;
+}
+
+cudaError_t cudaGraphDestroy(cudaGraph_t graph)
+{
+    delete graph;
+    return cudaSuccess;
+}
+
+cudaError_t cudaGraphExecDestroy(cudaGraphExec_t made)
+{
+    // what was launched goes on: it is in the queue
+    delete made;
+    return cudaSuccess;
 }

@@ -29,6 +29,7 @@ SCREE_DECLARE_LAUNCH_CUDA(scree_pair_carry)
 SCREE_DECLARE_LAUNCH_CUDA(scree_mesh_apart)
 SCREE_DECLARE_LAUNCH_CUDA(scree_mesh_gap)
 SCREE_DECLARE_LAUNCH_CUDA(scree_mesh_write)
+SCREE_DECLARE_LAUNCH_CUDA(scree_room)
 SCREE_DECLARE_LAUNCH_CUDA(scree_work_reduce)
 SCREE_DECLARE_LAUNCH_CUDA(scree_ended)
 SCREE_DECLARE_LAUNCH_CUDA(scree_wall_load_reduce)
@@ -365,10 +366,10 @@ static void test_sums()
                 all += (double)x;
             }
             scree_work_reduce_args reduce = {where.copy(parts.data(), num), num,
-                                             where.make<scree_work_sums>(num_groups)};
+                                             where.make<scree_work_sums>(num_groups), 1};
             LAUNCH_ON(where, scree_work_reduce, reduce, num_groups);
             where.keep(reduce.sums, num_groups);
-            reduce = {reduce.sums, num_groups, where.make<scree_work_sums>(1)};
+            reduce = {reduce.sums, num_groups, where.make<scree_work_sums>(1), SCREE_SUM_FAN_IN};
             LAUNCH_ON(where, scree_work_reduce, reduce, 1);
             where.keep(reduce.sums, 1);
             const scree_work_sums sum = where.read(reduce.sums, 1)[0];
@@ -378,10 +379,33 @@ static void test_sums()
             std::vector<scree_real> loads;
             for (int64_t k = 0; k < num * num_moving; ++k) loads.push_back((scree_real)(k % 7));
             const scree_wall_load_reduce_args wall = {where.copy(loads.data(), num * num_moving), num, num_moving,
-                                                      where.make<scree_real>(num_groups * num_moving)};
+                                                      where.make<scree_real>(num_groups * num_moving), 1};
             LAUNCH_ON(where, scree_wall_load_reduce, wall, num_groups * num_moving);
             where.keep(wall.sums, num_groups * num_moving);
         });
+}
+
+/// Halts for each thing that may lack room, and tells the number of contacts where nothing does.
+static void test_room()
+{
+    for (int lack = 0; lack < 7; ++lack)
+        check_two_sides(
+            [lack](side &where)
+            {
+                scree_pair_tally tally = {};
+                tally.num_contacts = lack == 1 ? 9 : 8;
+                tally.num_kept = lack == 2 ? 6 : 5;
+                if (lack == 3) tally.most_results.bits = scree_bits_of(2);
+                if (lack == 4) tally.most_found.bits = scree_bits_of(4);
+                if (lack == 5) tally.num_lacking[SCREE_LACK_PIECES] = 1;
+                if (lack == 6) tally.num_lacking[SCREE_LACK_CROSSINGS] = 1;
+                scree_room_args args = {where.copy(&tally, 1), 5, 8, where.zeros<scree_live>(1)};
+                LAUNCH_ON(where, scree_room, args, 1);
+                const scree_live live = where.read(args.live, 1)[0];
+                SCREE_CHECK_INT(live.halt, lack == 0 ? SCREE_HALT_NONE : SCREE_HALT_ROOM);
+                SCREE_CHECK_INT(live.num_contacts, lack == 0 ? 8 : 0);
+                where.keep(args.live, 1);
+            });
 }
 
 /// What ended contacts leave, and the largest indentation.
@@ -510,6 +534,7 @@ int main()
     SCREE_RUN(test_work);
     SCREE_RUN(test_wall_loads);
     SCREE_RUN(test_sums);
+    SCREE_RUN(test_room);
     SCREE_RUN(test_ended);
     SCREE_RUN(test_collisions);
     scene_run_end(&run);

@@ -183,6 +183,155 @@ static void test_queue()
 }
 #endif
 
+__global__ void add(int *values, int num, const int *summand)
+{
+    const int i = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
+    if (i < num) values[i] += *summand;
+}
+
+/// The calls that the graph of test_graph is made of: out = sums before each of the values, plus a number of the host.
+static void enqueue_sums(cudaStream_t stream, int *values, int num, int *summand, const int *summand_here, int *out)
+{
+    MUST_CUDA(cudaMemcpyAsync(summand, summand_here, sizeof *summand, cudaMemcpyHostToDevice, stream));
+    size_t num_bytes = 0;
+    MUST_CUDA(cub::DeviceScan::ExclusiveSum(nullptr, num_bytes, values, values, num, stream));
+    static char *scratch = nullptr;
+    if (scratch == nullptr) MUST_CUDA(cudaMalloc(&scratch, 1 << 16));
+    num_bytes = 1 << 16;
+    MUST_CUDA(cudaMemsetAsync(out, 0xff, sizeof *out * static_cast<size_t>(num), stream));
+    MUST_CUDA(cub::DeviceScan::ExclusiveSum(scratch, num_bytes, values, values, num, stream));
+    cudaLaunchConfig_t config = {};
+    config.gridDim = dim3(num_blocks(static_cast<unsigned>(num)));
+    config.blockDim = dim3(BLOCK);
+    config.stream = stream;
+    MUST_CUDA(cudaLaunchKernelEx(&config, add, values, num, static_cast<const int *>(summand)));
+    MUST_CUDA(cudaMemcpyAsync(out, values, sizeof *out * static_cast<size_t>(num), cudaMemcpyDeviceToDevice, stream));
+}
+
+static std::vector<int> sums_of(std::vector<int> values, int summand)
+{
+    int sum = 0;
+    for (int &value : values)
+    {
+        const int own = value;
+        value = sum + summand;
+        sum += own;
+    }
+    return values;
+}
+
+/// Nothing is done while calls are captured; the graph does them as often as it is launched, with what is then in
+/// pinned memory; another capture of the same calls changes its arguments.
+static void test_graph()
+{
+    const std::vector<int> numbers = made_numbers();
+    const std::vector<int> few(numbers.begin(), numbers.begin() + BLOCK);
+    const device_array<int> values(numbers), out(NUM), summand(1);
+    int *summand_here;
+    MUST_CUDA(cudaMallocHost(reinterpret_cast<void **>(&summand_here), sizeof *summand_here));
+    cudaStream_t stream;
+    MUST_CUDA(cudaStreamCreate(&stream));
+    enqueue_sums(stream, values.data, NUM, summand.data, summand_here, out.data); // takes scratch memory
+    MUST_CUDA(cudaStreamSynchronize(stream));
+    MUST_CUDA(cudaMemcpy(values.data, numbers.data(), NUM * sizeof(int), cudaMemcpyHostToDevice));
+
+    cudaGraphExec_t made = nullptr;
+    for (const int num : {NUM, BLOCK})
+    {
+        MUST_CUDA(cudaStreamBeginCapture(stream, cudaStreamCaptureModeThreadLocal));
+        enqueue_sums(stream, values.data, num, summand.data, summand_here, out.data);
+        cudaGraph_t graph;
+        MUST_CUDA(cudaStreamEndCapture(stream, &graph));
+        if (num == NUM)
+        {
+            SCREE_CHECK(values.read() == numbers);
+            MUST_CUDA(cudaGraphInstantiate(&made, graph, 0));
+        }
+        else
+        {
+            cudaGraphExecUpdateResultInfo info;
+            MUST_CUDA(cudaGraphExecUpdate(made, graph, &info));
+        }
+        MUST_CUDA(cudaGraphDestroy(graph));
+        std::vector<int> expected = num == NUM ? numbers : few;
+        MUST_CUDA(cudaMemcpy(values.data, expected.data(), expected.size() * sizeof(int), cudaMemcpyHostToDevice));
+        for (const int added : {3, -8})
+        {
+            expected = sums_of(expected, added);
+            *summand_here = added;
+            MUST_CUDA(cudaGraphLaunch(made, stream));
+            MUST_CUDA(cudaStreamSynchronize(stream));
+            std::vector<int> sums = out.read();
+            sums.resize(static_cast<size_t>(num));
+            SCREE_CHECK(sums == expected);
+        }
+    }
+    MUST_CUDA(cudaGraphExecDestroy(made));
+    MUST_CUDA(cudaStreamDestroy(stream));
+    MUST_CUDA(cudaFreeHost(summand_here));
+}
+
+/// What would wait, or change the memory there is, breaks a capture, and nothing else.
+static void test_broken_capture()
+{
+    const device_array<int> values(made_numbers());
+    cudaStream_t stream;
+    MUST_CUDA(cudaStreamCreate(&stream));
+    cudaGraph_t graph;
+    SCREE_CHECK_INT(cudaStreamEndCapture(stream, &graph), cudaErrorIllegalState);
+    SCREE_CHECK_INT(cudaStreamBeginCapture(nullptr, cudaStreamCaptureModeThreadLocal),
+                    cudaErrorStreamCaptureUnsupported);
+    for (int call = 0; call < 4; ++call)
+    {
+        MUST_CUDA(cudaStreamBeginCapture(stream, cudaStreamCaptureModeThreadLocal));
+        MUST_CUDA(cudaMemsetAsync(values.data, 0, NUM * sizeof(int), stream));
+        void *more = nullptr;
+        cudaError_t error = cudaSuccess;
+        if (call == 0) error = cudaStreamSynchronize(stream);
+        if (call == 1) error = cudaMalloc(&more, 16);
+        if (call == 2) error = cudaMemsetAsync(values.data, 1, sizeof(int), nullptr); // the stream without a name
+        SCREE_CHECK_INT(error, call < 2    ? cudaErrorStreamCaptureUnsupported
+                               : call == 2 ? cudaErrorStreamCaptureImplicit
+                                           : cudaSuccess);
+        SCREE_CHECK_INT(cudaStreamEndCapture(stream, &graph),
+                        call < 3 ? cudaErrorStreamCaptureInvalidated : cudaSuccess);
+        SCREE_CHECK((graph != nullptr) == (call == 3));
+        cudaGetLastError();
+    }
+    MUST_CUDA(cudaGraphDestroy(graph));
+    SCREE_CHECK(values.read() == made_numbers());
+    MUST_CUDA(cudaStreamDestroy(stream));
+}
+
+/// A graph of other calls cannot take the place of another.
+static void test_graph_of_other_calls()
+{
+    const device_array<int> values(made_numbers());
+    cudaStream_t stream;
+    MUST_CUDA(cudaStreamCreate(&stream));
+    cudaGraph_t graphs[2];
+    for (int k = 0; k < 2; ++k)
+    {
+        MUST_CUDA(cudaStreamBeginCapture(stream, cudaStreamCaptureModeThreadLocal));
+        for (int call = 0; call <= k; ++call) MUST_CUDA(cudaMemsetAsync(values.data + call, 0, sizeof(int), stream));
+        MUST_CUDA(cudaStreamEndCapture(stream, graphs + k));
+    }
+    cudaGraphExec_t made;
+    MUST_CUDA(cudaGraphInstantiate(&made, graphs[0], 0));
+    cudaGraphExecUpdateResultInfo info;
+    SCREE_CHECK_INT(cudaGraphExecUpdate(made, graphs[1], &info), cudaErrorGraphExecUpdateFailure);
+    SCREE_CHECK_INT(info.result, cudaGraphExecUpdateErrorTopologyChanged);
+    cudaGetLastError();
+    MUST_CUDA(cudaGraphLaunch(made, stream));
+    MUST_CUDA(cudaStreamSynchronize(stream));
+    std::vector<int> expected = made_numbers();
+    expected[0] = 0;
+    SCREE_CHECK(values.read() == expected);
+    for (const cudaGraph_t graph : graphs) MUST_CUDA(cudaGraphDestroy(graph));
+    MUST_CUDA(cudaGraphExecDestroy(made));
+    MUST_CUDA(cudaStreamDestroy(stream));
+}
+
 static void test_refused_launch()
 {
     const device_array<int> out(BLOCK);
@@ -251,6 +400,9 @@ int main()
     SCREE_RUN(test_dynamic_shared);
     SCREE_RUN(test_queue);
 #endif
+    SCREE_RUN(test_graph);
+    SCREE_RUN(test_broken_capture);
+    SCREE_RUN(test_graph_of_other_calls);
     SCREE_RUN(test_refused_launch);
     SCREE_RUN(test_sort);
     SCREE_RUN(test_sums);

@@ -20,6 +20,7 @@ SCREE_DECLARE_LAUNCH_CUDA(scree_predict)
 SCREE_DECLARE_LAUNCH_CUDA(scree_correct)
 SCREE_DECLARE_LAUNCH_CUDA(scree_boxes)
 SCREE_DECLARE_LAUNCH_CUDA(scree_travel)
+SCREE_DECLARE_LAUNCH_CUDA(scree_skin)
 SCREE_DECLARE_LAUNCH_CUDA(scree_place_walls)
 SCREE_DECLARE_LAUNCH_CUDA(scree_place_particles)
 
@@ -114,16 +115,27 @@ static void test_place()
             scree_place_walls_args walls;
             walls.bodies = args.bodies;
             walls.first = num_particles;
-            for (int64_t w = 0; w < SCREE_WALLS_AT_ONCE; ++w)
-            {
-                const int64_t body = num_particles + w % s->num_walls;
-                walls.walls[w].pose = b->pose[body];
-                walls.walls[w].velocity = b->moving[body].velocity;
-                walls.walls[w].angular_velocity = b->moving[body].angular_velocity;
-            }
+            walls.walls = where.copy(b->wall_motion_here, s->num_walls);
             LAUNCH_ON(where, scree_place_walls, walls, s->num_walls);
             keep_bodies(where, args.bodies);
         });
+}
+
+/// Halts if a body may have left its skin, or if nobody can say.
+static void test_skin()
+{
+    for (const double moved : {0.75, 1.0, 1.25, (double)NAN})
+        check_two_sides(
+            [moved](side &where)
+            {
+                const scree_maximum most[2] = {{scree_bits_of(moved)}, {scree_bits_of(0.25)}};
+                const scree_maximum *maxima = where.copy(most, 2);
+                scree_skin_args args = {maxima, maxima + 1, (scree_real)1.25, where.zeros<scree_live>(1)};
+                LAUNCH_ON(where, scree_skin, args, 1);
+                const scree_live live = where.read(args.live, 1)[0];
+                SCREE_CHECK_INT(live.halt, moved <= 1 ? SCREE_HALT_NONE : SCREE_HALT_SEARCH);
+                where.keep(args.live, 1);
+            });
 }
 
 static void test_travel()
@@ -324,6 +336,7 @@ int main()
     SCREE_RUN(test_boxes);
     SCREE_RUN(test_place);
     SCREE_RUN(test_travel);
+    SCREE_RUN(test_skin);
     SCREE_RUN(test_tree);
     SCREE_RUN(test_pairs);
     scene_run_end(&run);

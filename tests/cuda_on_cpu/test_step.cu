@@ -102,16 +102,33 @@ static std::string patches()
            "walls:\n  - {name: floor, shape: floor, material: steel, position: [0, 0, -0.01]}\n";
 }
 
+/// Balls that land one after the other, all within one skin: more contacts than the recorded steps have room for.
+static std::string landing()
+{
+    std::string text = std::string("name: landing\ntime: {end: 0.012, step: 5e-5}\nsolver: {skin: 1.5}\n") + head +
+                       "shapes:\n  - {name: ball, source: sphere, size: 0.016}\n" + wall_shapes +
+                       "particles:\n  - name: balls\n    shape: ball\n    material: stone\n    bodies:\n";
+    for (int k = 0; k < 64; ++k)
+    {
+        char body[128];
+        snprintf(body, sizeof body, "      - {size: 0.016, position: [%g, %g, %g], velocity: [0, 0, -0.4]}\n",
+                 0.02 * (k % 8) - 0.07, 0.02 * (k / 8) - 0.07, 0.0081 + 2e-5 * (k * 29 % 64));
+        text += body;
+    }
+    return text + "walls:\n  - {name: floor, shape: floor, material: steel, position: [0, 0, -0.01]}\n";
+}
+
 #ifdef CUDA_ON_CPU_ADDRESS
 #define SCREE_TEST_ARENA_BYTES 0
 #else
 #define SCREE_TEST_ARENA_BYTES (1 << 20)
 #endif
 
-static scree_device *open_device(int32_t block)
+static scree_device *open_device(int32_t block, bool records = true)
 {
     scree_device_def def = scree_default_device_def();
     def.block = block;
+    def.records = records;
     // 0 where a sanitizer looks for the ends of the arrays
     const char *arena = std::getenv("SCREE_TEST_ARENA");
     def.arena_bytes = arena != nullptr ? std::strtoll(arena, nullptr, 10) : SCREE_TEST_ARENA_BYTES;
@@ -185,14 +202,18 @@ static void check_same(scree_simulation *here, scree_simulation *there)
 /// Classes of pairs of meshes in the last scene that was checked.
 static scree_work_classes classes;
 
+/// Steps of it that found no room while they were played.
+static int64_t num_halts_for_room;
+
 /// All steps of a scene on both sides. `work_class`: all pairs of meshes go to teams of its size; -1: each to its own.
-static void check_scene(const std::string &text, int32_t block, int64_t least_contacts, int32_t work_class = -1)
+static void check_scene(const std::string &text, int32_t block, int64_t least_contacts, int32_t work_class = -1,
+                        bool records = true)
 {
     scene_run here, there;
     scene_run_start(&here, text.c_str());
     scene_run_start(&there, text.c_str());
     if (here.simulation == nullptr || there.simulation == nullptr) return;
-    scree_device *device = open_device(block);
+    scree_device *device = open_device(block, records);
     move(there.simulation, device);
     classes = there.simulation->there->narrow_phase.classes;
     if (work_class >= 0) there.simulation->there->narrow_phase.classes = {work_class, work_class};
@@ -206,8 +227,13 @@ static void check_scene(const std::string &text, int32_t block, int64_t least_co
         const int64_t num = here.simulation->contacts.num_contacts;
         most_contacts = num > most_contacts ? num : most_contacts;
     }
-    printf("%s: up to %lld contacts, %lld searches\n", here.file.scene.name, (long long)most_contacts,
-           (long long)scree_simulation_counters(there.simulation).num_rebuilds);
+    const int64_t *num_halts = there.simulation->there->buffers->num_halts;
+    printf("%s: up to %lld contacts, %lld searches; %lld steps played, %lld halted for a search, %lld for room\n",
+           here.file.scene.name, (long long)most_contacts,
+           (long long)scree_simulation_counters(there.simulation).num_rebuilds, (long long)num_halts[SCREE_HALT_NONE],
+           (long long)num_halts[SCREE_HALT_SEARCH], (long long)num_halts[SCREE_HALT_ROOM]);
+    SCREE_CHECK(records ? num_halts[SCREE_HALT_NONE] > 100 : num_halts[SCREE_HALT_NONE] == 0);
+    num_halts_for_room = num_halts[SCREE_HALT_ROOM];
     SCREE_CHECK(most_contacts >= least_contacts);
     scene_run_end(&there);
     SCREE_CHECK_INT(scree_device_status(device, NULL), SCREE_OK);
@@ -227,6 +253,29 @@ static void test_teams_of_one_size()
         check_scene(polyhedra(), 128, 12, work_class);
 }
 static void test_mixed() { check_scene(mixed(), 50, 20); }
+static void test_no_room()
+{
+    check_scene(landing(), 128, 40);
+    SCREE_CHECK(num_halts_for_room > 0);
+}
+/// Nothing is recorded, or it cannot be: the same.
+static void test_call_by_call()
+{
+    check_scene(mixed(), 128, 20, -1, false);
+#ifdef CUDA_ON_CPU
+    cuda_on_cpu::refuse_graphs(true);
+    scene_run run;
+    scene_run_start(&run, spheres().c_str());
+    scree_device *device = open_device(128);
+    move(run.simulation, device);
+    steps(run.simulation, 5);
+    SCREE_CHECK(!scree_device_records(device));
+    cuda_on_cpu::refuse_graphs(false);
+    scene_run_end(&run);
+    SCREE_CHECK_INT(scree_device_status(device, NULL), SCREE_OK);
+    scree_device_close(device);
+#endif
+}
 static void test_patches() { check_scene(patches(), 128, 2); }
 
 /// From a checkpoint of the CPU on the device, and from one of the device on the CPU: the unbroken run.
@@ -309,6 +358,8 @@ int main()
     SCREE_RUN(test_teams_of_one_size);
     SCREE_RUN(test_mixed);
     SCREE_RUN(test_patches);
+    SCREE_RUN(test_no_room);
+    SCREE_RUN(test_call_by_call);
     SCREE_RUN(test_sides_change_at_checkpoints);
 #ifdef TEST_MEMORY_ENDS
     SCREE_RUN(test_memory_ends);

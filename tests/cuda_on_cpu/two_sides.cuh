@@ -22,7 +22,9 @@ struct side
 
     explicit side(bool is_device_, int32_t block = 0) : is_device(is_device_)
     {
-        const scree_device_def def = {0, block, 0};
+        scree_device_def def = scree_default_device_def();
+        def.block = block;
+        def.arena_bytes = 0;
         if (is_device && scree_cuda_open(&device, &def, nullptr) != SCREE_OK) std::exit(EXIT_FAILURE);
     }
     side(const side &) = delete;

@@ -183,7 +183,13 @@ enum cudaError_t
     cudaErrorInsufficientDriver = 35,
     cudaErrorNoDevice = 100,
     cudaErrorNoKernelImageForDevice = 209,
-    cudaErrorIllegalAddress = 700
+    cudaErrorIllegalState = 401,
+    cudaErrorIllegalAddress = 700,
+    cudaErrorStreamCaptureUnsupported = 900,
+    cudaErrorStreamCaptureInvalidated = 901,
+    cudaErrorStreamCaptureUnmatched = 903,
+    cudaErrorStreamCaptureImplicit = 906,
+    cudaErrorGraphExecUpdateFailure = 910
 };
 enum cudaMemcpyKind
 {
@@ -192,7 +198,24 @@ enum cudaMemcpyKind
     cudaMemcpyDeviceToHost,
     cudaMemcpyDeviceToDevice
 };
-typedef struct cuda_on_cpu_stream *cudaStream_t; ///< all streams are one queue
+enum cudaStreamCaptureMode
+{
+    cudaStreamCaptureModeGlobal,
+    cudaStreamCaptureModeThreadLocal,
+    cudaStreamCaptureModeRelaxed
+};
+typedef struct cuda_on_cpu_graph *cudaGraph_t;
+typedef struct cuda_on_cpu_graph *cudaGraphExec_t;
+enum cudaGraphExecUpdateResult
+{
+    cudaGraphExecUpdateSuccess,
+    cudaGraphExecUpdateError,
+    cudaGraphExecUpdateErrorTopologyChanged
+};
+struct cudaGraphExecUpdateResultInfo
+{
+    cudaGraphExecUpdateResult result;
+};
 
 struct cudaDeviceProp
 {
@@ -230,11 +253,21 @@ template <class T> cudaError_t cudaMalloc(T **address, size_t num_bytes)
     return cudaMalloc(reinterpret_cast<void **>(address), num_bytes);
 }
 cudaError_t cudaFree(void *address);
+cudaError_t cudaMallocHost(void **address, size_t num_bytes);
+cudaError_t cudaFreeHost(void *address);
 cudaError_t cudaMemGetInfo(size_t *num_free, size_t *num_total);
 cudaError_t cudaMemcpy(void *to, const void *from, size_t num_bytes, cudaMemcpyKind kind);
 cudaError_t cudaMemcpyAsync(void *to, const void *from, size_t num_bytes, cudaMemcpyKind kind, cudaStream_t stream);
 cudaError_t cudaMemset(void *address, int value, size_t num_bytes);
 cudaError_t cudaMemsetAsync(void *address, int value, size_t num_bytes, cudaStream_t stream);
+
+cudaError_t cudaStreamBeginCapture(cudaStream_t stream, cudaStreamCaptureMode mode);
+cudaError_t cudaStreamEndCapture(cudaStream_t stream, cudaGraph_t *graph);
+cudaError_t cudaGraphInstantiate(cudaGraphExec_t *made, cudaGraph_t graph, unsigned long long flags = 0);
+cudaError_t cudaGraphExecUpdate(cudaGraphExec_t made, cudaGraph_t graph, cudaGraphExecUpdateResultInfo *info);
+cudaError_t cudaGraphLaunch(cudaGraphExec_t made, cudaStream_t stream);
+cudaError_t cudaGraphDestroy(cudaGraph_t graph);
+cudaError_t cudaGraphExecDestroy(cudaGraphExec_t made);
 
 template <class... Parameters, class... Arguments>
 cudaError_t cudaLaunchKernelEx(const cudaLaunchConfig_t *config, void (*kernel)(Parameters...),
@@ -253,7 +286,8 @@ cudaError_t cudaLaunchKernelEx(const cudaLaunchConfig_t *config, void (*kernel)(
         },
         copies);
     const cuda_on_cpu::launch_shape shape = {config->gridDim, config->blockDim, config->dynamicSmemBytes};
-    return static_cast<cudaError_t>(cuda_on_cpu::launch(name, shape, [kernel, copies] { std::apply(kernel, copies); }));
+    return static_cast<cudaError_t>(cuda_on_cpu::launch(
+        name, shape, [kernel, copies] { std::apply(kernel, copies); }, config->stream));
 }
 
 /// For tests of what only the emulation promises.

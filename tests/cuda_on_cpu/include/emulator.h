@@ -20,6 +20,11 @@ struct dim3
     constexpr dim3(unsigned x_ = 1, unsigned y_ = 1, unsigned z_ = 1) : x(x_), y(y_), z(z_) {}
 };
 
+struct cuda_on_cpu_stream
+{
+};
+typedef struct cuda_on_cpu_stream *cudaStream_t; ///< all streams are one queue
+
 namespace cuda_on_cpu
 {
 
@@ -80,15 +85,26 @@ struct launch_shape
     dim3 grid, block;
     size_t dynamic_shared_bytes;
 };
-int launch(const char *kernel, const launch_shape &shape, std::function<void()> body);
+int launch(const char *kernel, const launch_shape &shape, std::function<void()> body, cudaStream_t stream);
 
-/// Work for the device in the order of the calls. It is done when the host waits for the device, not before.
-void enqueue(std::function<void()> work);
+enum class node_kind
+{
+    kernel,
+    copy,
+    set,
+    other
+};
+/// Work for the device in the order of the calls. It is done when the host waits for the device, not before; if the
+/// stream is captured, it is kept for a graph instead. Returns a cudaError_t.
+int enqueue(node_kind kind, std::function<void()> work, cudaStream_t stream);
 /// Does all the work that waits.
 void drain();
 
 /// From now on there is memory for so many allocations; < 0: for all that fit.
 void allow_allocations(long num);
+
+/// From now on graphs can be captured, but not be made ready for launches; false: they can.
+void refuse_graphs(bool refuses);
 
 /// Name of a function; the program must export its symbols.
 const char *name_of(const void *function);

@@ -26,22 +26,24 @@ struct DeviceRadixSort
 {
     template <class Key, class Value, class Count>
     static cudaError_t SortPairs(void *scratch, size_t &num_bytes, DoubleBuffer<Key> &keys, DoubleBuffer<Value> &values,
-                                 Count num_items, int begin_bit, int end_bit, cudaStream_t = nullptr)
+                                 Count num_items, int begin_bit, int end_bit, cudaStream_t stream = nullptr)
     {
-        if (cuda_on_cpu::asks_for_scratch(scratch, &num_bytes, static_cast<size_t>(num_items))) return cudaSuccess;
+        if (cuda_on_cpu::asks_for_scratch(scratch, &num_bytes, static_cast<size_t>(num_items), stream))
+            return cudaSuccess;
         const int flip = num_passes(begin_bit, end_bit) & 1;
         sort(keys, values.Current(), values.d_buffers[values.selector ^ flip], static_cast<size_t>(num_items),
-             begin_bit, end_bit, flip);
+             begin_bit, end_bit, flip, stream);
         values.selector ^= flip;
         return cudaSuccess;
     }
     template <class Key, class Count>
     static cudaError_t SortKeys(void *scratch, size_t &num_bytes, DoubleBuffer<Key> &keys, Count num_items,
-                                int begin_bit, int end_bit, cudaStream_t = nullptr)
+                                int begin_bit, int end_bit, cudaStream_t stream = nullptr)
     {
-        if (cuda_on_cpu::asks_for_scratch(scratch, &num_bytes, static_cast<size_t>(num_items))) return cudaSuccess;
+        if (cuda_on_cpu::asks_for_scratch(scratch, &num_bytes, static_cast<size_t>(num_items), stream))
+            return cudaSuccess;
         sort(keys, static_cast<const int *>(nullptr), static_cast<int *>(nullptr), static_cast<size_t>(num_items),
-             begin_bit, end_bit, num_passes(begin_bit, end_bit) & 1);
+             begin_bit, end_bit, num_passes(begin_bit, end_bit) & 1, stream);
         return cudaSuccess;
     }
 
@@ -52,7 +54,7 @@ struct DeviceRadixSort
     /// Sorted items to the buffers that are current after `flip`; the keys of the others are spoilt.
     template <class Key, class Value>
     static void sort(DoubleBuffer<Key> &keys, const Value *values, Value *sorted_values, size_t num, int begin_bit,
-                     int end_bit, int flip)
+                     int end_bit, int flip, cudaStream_t stream)
     {
         static_assert(std::is_unsigned<Key>::value, "keys are unsigned");
         Key *from = keys.Current();
@@ -60,6 +62,7 @@ struct DeviceRadixSort
         Key *to = keys.Current(), *spare = keys.Alternate();
         const Key mask = end_bit - begin_bit >= 64 ? ~Key(0) : ((Key(1) << (end_bit - begin_bit)) - 1);
         cuda_on_cpu::enqueue(
+            cuda_on_cpu::node_kind::other,
             [=]
             {
                 const std::vector<Key> old_keys(from, from + num);
@@ -71,7 +74,8 @@ struct DeviceRadixSort
                 std::memset(static_cast<void *>(spare), 0xab, num * sizeof(Key));
                 for (size_t i = 0; i < num; ++i) to[i] = old_keys[order[i]];
                 for (size_t i = 0; values && i < num; ++i) sorted_values[i] = old_values[order[i]];
-            });
+            },
+            stream);
     }
 };
 

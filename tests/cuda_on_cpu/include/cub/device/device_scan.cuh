@@ -12,10 +12,12 @@ struct DeviceScan
 {
     template <class T, class Count>
     static cudaError_t ExclusiveSum(void *scratch, size_t &num_bytes, const T *in, T *out, Count num_items,
-                                    cudaStream_t = nullptr)
+                                    cudaStream_t stream = nullptr)
     {
-        if (cuda_on_cpu::asks_for_scratch(scratch, &num_bytes, static_cast<size_t>(num_items))) return cudaSuccess;
-        cuda_on_cpu::enqueue(
+        if (cuda_on_cpu::asks_for_scratch(scratch, &num_bytes, static_cast<size_t>(num_items), stream))
+            return cudaSuccess;
+        const int error = cuda_on_cpu::enqueue(
+            cuda_on_cpu::node_kind::other,
             [=]
             {
                 T sum = 0;
@@ -25,8 +27,9 @@ struct DeviceScan
                     out[i] = sum;
                     sum = static_cast<T>(sum + value);
                 }
-            });
-        return cudaSuccess;
+            },
+            stream);
+        return static_cast<cudaError_t>(error);
     }
 };
 

@@ -9,7 +9,7 @@ namespace cuda_on_cpu
 {
 
 /// True if this call only asked. Otherwise spoils the scratch memory when its turn comes: nothing may be kept there.
-inline bool asks_for_scratch(void *scratch, size_t *num_bytes, size_t num_items)
+inline bool asks_for_scratch(void *scratch, size_t *num_bytes, size_t num_items, cudaStream_t stream)
 {
     const size_t needed = 256 + num_items;
     if (scratch == nullptr)
@@ -18,7 +18,8 @@ inline bool asks_for_scratch(void *scratch, size_t *num_bytes, size_t num_items)
         return true;
     }
     if (*num_bytes < needed) fail("CUB: scratch memory of %zu bytes, needed are %zu", *num_bytes, needed);
-    enqueue([scratch, needed] { std::memset(scratch, 0xab, needed); });
+    enqueue(
+        node_kind::other, [scratch, needed] { std::memset(scratch, 0xab, needed); }, stream);
     return false;
 }
 

@@ -19,6 +19,7 @@ from run_folder import Run  # noqa: E402
 STUDY = Study(__file__)
 BODIES, SEEDS = (20, 2) if QUICK else (80, 8)
 DEPTH = 0.02  # of the lowest point in the plate, of the size
+SIZE = 0.05  # of the bodies of a heap [m]
 SHAPES = ("l_shape", "u_shape", "ring")
 MODES = ("merged", "separate")
 
@@ -85,7 +86,7 @@ def wrench(pieces, centre):
 
 
 def press():
-    """Force and moment of the cases by mode."""
+    """Force, moment and largest indentation of the cases by mode."""
     listed = list(poses())
     batch = STUDY.runs / "poses.txt"
     batch.write_text("".join(json.dumps({"id": str(k)} | pair) + "\n" for k, (_, _, pair, _) in enumerate(listed)))
@@ -97,7 +98,7 @@ def press():
         row = {"x": abscissa, "patches": len(separate["patches"])}
         for mode, pieces in zip(MODES, ([merged], separate["patches"]), strict=True):
             force, moment = wrench(pieces, centre)
-            row[mode] = [force.tolist(), moment.tolist()]
+            row[mode] = [force.tolist(), moment.tolist(), max(piece["indentation"] or 0 for piece in pieces)]
         results.setdefault(case, []).append(row)
     return results
 
@@ -111,7 +112,7 @@ def heap_scene(shape):
         "shapes": [{"name": "body", "source": "file", "file": str(ROOT / "models" / f"{shape}.obj")},
                    {"name": "plate", "source": "box", "size": [4, 4, 0.1]}],
         "particles": [{"name": "bodies", "shape": "body", "material": "stone", "count": BODIES, "seed": 1,
-                       "size": {"distribution": "fixed", "mean": 0.05},
+                       "size": {"distribution": "fixed", "mean": SIZE},
                        "region": {"min": [-0.15, -0.15, 0.005], "max": [0.15, 0.15, 2]}}],
         "walls": [{"name": "floor", "shape": "plate", "material": "stone", "position": [0, 0, -0.05]}],
         "output": {"series": 0.01, "frames": 0.5, "checkpoint": 0.5},
@@ -142,6 +143,7 @@ def measure_heap(member):
         "deepest": summary["counters"]["largest_indentation"],
         "moving": summary["energies"]["kinetic"] + summary["energies"]["rotational"],
         "balance": abs(summary["energy_error"]), "seconds": summary["processor_seconds"],
+        "mass": summary["mass"], "time_step": summary["time_step"], "seed": int(member.values["particles.bodies.seed"]),
     }
 
 
@@ -175,7 +177,8 @@ def plot_heaps(results):
             for m, mode in enumerate(MODES):
                 values = [unit * row[column] for row in results["heaps"] if (row["shape"], row["mode"]) == (shape, mode)]
                 ax.plot([k + 0.25 * m - 0.125] * len(values), values, f"C{3 * m}.", ms=4, label=mode if k == 0 else None)
-                ax.errorbar(k + 0.25 * m - 0.06, np.mean(values), np.std(values, ddof=1), fmt=f"C{3 * m}o", ms=4, capsize=3)
+                error = np.std(values, ddof=1) / math.sqrt(len(values))
+                ax.errorbar(k + 0.25 * m - 0.06, np.mean(values), error, fmt=f"C{3 * m}o", ms=4, capsize=3)
         ax.set_xticks(range(len(SHAPES)), ["L", "U", "ring"])
         ax.set(ylabel=label)
         ax.grid(alpha=0.3)
@@ -196,18 +199,52 @@ def heaps_table(results):
                 return f"{np.mean(values):.{digits}f} ± {np.std(values, ddof=1) / math.sqrt(len(values)):.{digits}f}"
 
             worst = {name: max(row[name] for row in rows) for name in ("deepest", "moving", "balance")}
+            worst["moving"] /= 9.81 * SIZE * rows[0]["mass"]
             lines.append([shape, mode, spread("height", 1e3), spread("spread", 1e3), spread("coordination", 1, 2),
                           f"{1e3 * worst['deepest']:.1f}", f"{worst['moving']:.0e}", f"{worst['balance']:.0e}",
                           f"{medians[mode] / medians['merged']:.2f}"])
     return table(["", "patches", "mean height [mm]", "spread [mm]", "coordination number", "deepest [mm]",
-                  "kinetic energy left [J]", "error of the balance", "time"], lines)
+                  "kinetic energy left over m g 50 mm", "error of the balance", "time"], lines)
+
+
+def differences_table(results):
+    """Separate over merged, seed by seed: the same places and orientations at the start."""
+    columns = ("height", "spread", "coordination")
+    lines, all_of_them = [], {column: [] for column in columns}
+
+    def shown(values):
+        return f"{np.mean(values):.1f} ± {np.std(values, ddof=1) / math.sqrt(len(values)):.1f} ({np.std(values, ddof=1):.1f})"
+
+    for shape in SHAPES:
+        merged, separate = ({row["seed"]: row for row in results["heaps"] if (row["shape"], row["mode"]) == (shape, mode)}
+                            for mode in MODES)
+        changes = {column: [100 * (separate[seed][column] / merged[seed][column] - 1) for seed in merged] for column in columns}
+        lines.append([shape, len(merged), *(shown(changes[column]) for column in columns)])
+        for column in columns:
+            all_of_them[column] += changes[column]
+    lines.append(["all", len(all_of_them["height"]), *(shown(all_of_them[column]) for column in columns)])
+    return table(["", "pairs", "mean height [%]", "spread [%]", "coordination number [%]"], lines)
+
+
+def forces(rows, mode):
+    return [float(np.linalg.norm(row[mode][0])) for row in rows]
+
+
+def ring_texts(rows):
+    """Ranges of force, moment and indentation of the linked rings."""
+    moment = max(np.linalg.norm(row["separate"][1]) for row in rows)
+    texts = {f"{mode}_indentation": f"{max(row[mode][2] for row in rows):.2f}" for mode in MODES}
+    return texts | {"separate_moment": f"{moment:.3f}", "merged_least": f"{min(forces(rows, 'merged')):.3f}",
+                    "merged_most": f"{max(forces(rows, 'merged')):.3f}", "separate_most": f"{max(forces(rows, 'separate')):.3f}"}
 
 
 def make_page(results):
     plot_press(results)
     plot_heaps(results)
     minutes = sum(row["seconds"] for row in results["heaps"]) / 60
-    return {"heaps": heaps_table(results), "bodies": str(BODIES), "seeds": str(SEEDS), "minutes": f"{minutes:.0f}"}
+    steps = [next(row["time_step"] for row in results["heaps"] if row["shape"] == shape) for shape in SHAPES]
+    return {"heaps": heaps_table(results), "differences": differences_table(results), "bodies": str(BODIES), "seeds": str(SEEDS),
+            "minutes": f"{minutes:.0f}", "steps": ", ".join(f"{step:.2e}" for step in steps)} | ring_texts(results["press"]["ring"])
 
 
 if __name__ == "__main__":

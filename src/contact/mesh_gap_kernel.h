@@ -4,7 +4,8 @@
 ///
 /// Two triangles that do not meet are nearest at two of their edges, or at a corner of one and a point inside the
 /// other: the least of nine distances of segments (Ericson 2005, Real-Time Collision Detection, 5.1.9) and six heights.
-/// The triangles of the smaller mesh are taken one by one through the tree of the larger one.
+/// The triangles of the smaller mesh that its tree does not show to be far from the larger one are taken one by one
+/// through the tree of that.
 #ifndef SCREE_MESH_GAP_KERNEL_H
 #define SCREE_MESH_GAP_KERNEL_H
 
@@ -95,6 +96,17 @@ SCREE_FN scree_real scree_boxes_squared(scree_box a, scree_box b)
     return x * x + y * y + z * z;
 }
 
+/// Is a box farther from a plane through `point` across `normal`, of any length, than the root of `least`?
+SCREE_FN bool scree_is_box_beyond_plane(scree_box box, scree_vec3 point, scree_vec3 normal, scree_real least)
+{
+    const scree_vec3 half = scree_box_half(box);
+    const scree_real middle = scree_vec3_dot(normal, scree_vec3_sub(scree_box_middle(box), point));
+    const scree_real extent =
+        scree_abs(normal.x) * half.x + scree_abs(normal.y) * half.y + scree_abs(normal.z) * half.z;
+    const scree_real away = scree_abs(middle) - extent;
+    return away > 0 && away * away > least * scree_vec3_dot(normal, normal);
+}
+
 SCREE_FN scree_gap_triangle scree_gap_triangle_of(const scree_shape_view *mesh, int32_t t)
 {
     const int32_t *v = mesh->triangles[t].v;
@@ -112,10 +124,13 @@ SCREE_FN scree_real scree_triangle_to_mesh_squared(const scree_shape_view *mesh,
     scree_box box;
     box.lower = scree_vec3_min(scree_vec3_min(u->a, u->b), u->c);
     box.upper = scree_vec3_max(scree_vec3_max(u->a, u->b), u->c);
+    // the box of a triangle of a large wall holds all, its plane does not
+    const scree_vec3 normal = scree_vec3_cross(scree_vec3_sub(u->b, u->a), scree_vec3_sub(u->c, u->a));
     for (int32_t k = mesh->tree.root; k != SCREE_LBVH_END;)
     {
         const scree_lbvh_node *node = mesh->tree.nodes + k;
-        const bool is_entered = scree_boxes_squared(node->box, box) < least;
+        const bool is_entered =
+            scree_boxes_squared(node->box, box) < least && !scree_is_box_beyond_plane(node->box, u->a, normal, least);
         if (is_entered && node->first_child < 0)
         {
             const scree_gap_triangle t = scree_gap_triangle_of(mesh, -1 - node->first_child);
@@ -124,6 +139,17 @@ SCREE_FN scree_real scree_triangle_to_mesh_squared(const scree_shape_view *mesh,
         k = is_entered && node->first_child >= 0 ? k + 1 : node->escape;
     }
     return least;
+}
+
+/// Box around a posed one; what rounding may lack of it the gap has room for.
+SCREE_FN scree_box scree_box_turned(const scree_relative_pose *pose, scree_box box)
+{
+    const scree_vec3 middle = scree_affine(&pose->rotation, scree_box_middle(box), pose->translation);
+    const scree_vec3 half = scree_turned_extents(&pose->rotation, scree_box_half(box));
+    scree_box turned;
+    turned.lower = scree_vec3_sub(middle, half);
+    turned.upper = scree_vec3_add(middle, half);
+    return turned;
 }
 
 /// Gap [m] of two posed meshes without a common point: no more than their distance, rounding included, and no more than
@@ -137,14 +163,20 @@ SCREE_FN scree_real scree_mesh_gap(const scree_shape_view *large, const scree_po
     const scree_real reach = scree_min(large->bounding_radius, small->bounding_radius * ratio) * SCREE_GAP_REACH;
     scree_real least = reach * reach;
     const scree_real too_near = useful / large_pose->scale * (useful / large_pose->scale);
-    for (int32_t k = 0; k < small->num_triangles; ++k)
+    for (int32_t k = small->tree.root; k != SCREE_LBVH_END;)
     {
         if (least < too_near) return 0;
-        scree_gap_triangle u = scree_gap_triangle_of(small, k);
-        u.a = scree_affine(&pose.rotation, u.a, pose.translation);
-        u.b = scree_affine(&pose.rotation, u.b, pose.translation);
-        u.c = scree_affine(&pose.rotation, u.c, pose.translation);
-        least = scree_triangle_to_mesh_squared(large, &u, least);
+        const scree_lbvh_node *node = small->tree.nodes + k;
+        const bool is_entered = scree_boxes_squared(large->box, scree_box_turned(&pose, node->box)) < least;
+        if (is_entered && node->first_child < 0)
+        {
+            scree_gap_triangle u = scree_gap_triangle_of(small, -1 - node->first_child);
+            u.a = scree_affine(&pose.rotation, u.a, pose.translation);
+            u.b = scree_affine(&pose.rotation, u.b, pose.translation);
+            u.c = scree_affine(&pose.rotation, u.c, pose.translation);
+            least = scree_triangle_to_mesh_squared(large, &u, least);
+        }
+        k = is_entered && node->first_child >= 0 ? k + 1 : node->escape;
     }
     if (least < too_near) return 0;
     const scree_real size =

@@ -26,35 +26,76 @@ SCREE_FN scree_vec3 scree_support_point(const scree_shape_view *shape, scree_vec
     return vertices[best];
 }
 
-/// Support point in world axes, relative to the position of the body.
+/// Support point in world axes, relative to the position of the body. `is_mapped`: from the table of the shape, if it
+/// has one, which is somewhat outside.
 SCREE_FN scree_vec3 scree_posed_support_point(const scree_shape_view *shape, const scree_mat3 *rotation,
-                                              scree_real scale, scree_vec3 direction)
+                                              scree_real scale, scree_vec3 direction, bool is_mapped)
 {
-    const scree_vec3 own = scree_support_point(shape, scree_mat3_apply_transposed(*rotation, direction));
+    const scree_vec3 own_direction = scree_mat3_apply_transposed(*rotation, direction);
+    const scree_vec3 own = is_mapped && shape->support_map ? scree_support_map_point(shape->support_map, own_direction)
+                                                           : scree_support_point(shape, own_direction);
     return scree_vec3_scale(scree_mat3_apply(*rotation, own), scale);
 }
+
+/// Two bodies between which a plane is looked for.
+typedef struct scree_separation_bodies
+{
+    const scree_shape_view *shape[2];
+    scree_mat3 rotation[2];
+    scree_real scale[2];
+    scree_vec3 between; ///< position of the second minus that of the first
+    scree_real size;    ///< of both together
+} scree_separation_bodies;
+
+/// Gap [m] along a unit direction, beyond rounding, and the way between the points that lie farthest along it.
+SCREE_FN scree_real scree_gap_along(const scree_separation_bodies *bodies, scree_vec3 d, bool is_mapped,
+                                    scree_vec3 *way)
+{
+    const scree_vec3 p =
+        scree_posed_support_point(bodies->shape[0], &bodies->rotation[0], bodies->scale[0], d, is_mapped);
+    const scree_vec3 q = scree_posed_support_point(bodies->shape[1], &bodies->rotation[1], bodies->scale[1],
+                                                   scree_vec3_negate(d), is_mapped);
+    *way = scree_vec3_sub(scree_vec3_add(bodies->between, q), p);
+    // points of a table are its slopes, which lose 264 units
+    return scree_vec3_dot(d, *way) - (is_mapped ? 384 : 64) * SCREE_REAL_EPSILON * bodies->size;
+}
+
+/// A gap by table that falls short of 0 by less than this share of the sizes asks all vertices; a larger share finds
+/// few planes more.
+#define SCREE_SUPPORT_DOUBT ((scree_real)5e-4)
 
 /// Gap [m] between the two along *direction, a unit vector out of A into B, which is improved until the gap is positive
 /// beyond rounding; 0 if none was found. Start from the direction of the last time, or from zero.
 SCREE_FN scree_real scree_separation_search(const scree_shape_view *a, const scree_pose *pose_a,
                                             const scree_shape_view *b, const scree_pose *pose_b, scree_vec3 *direction)
 {
-    const scree_mat3 rotation_a = scree_mat3_from_quat(pose_a->orientation);
-    const scree_mat3 rotation_b = scree_mat3_from_quat(pose_b->orientation);
-    const scree_vec3 between = scree_vec3_sub(pose_b->position, pose_a->position);
-    const scree_real size =
-        scree_vec3_length(between) + a->bounding_radius * pose_a->scale + b->bounding_radius * pose_b->scale;
+    scree_separation_bodies bodies;
+    bodies.shape[0] = a;
+    bodies.shape[1] = b;
+    bodies.rotation[0] = scree_mat3_from_quat(pose_a->orientation);
+    bodies.rotation[1] = scree_mat3_from_quat(pose_b->orientation);
+    bodies.scale[0] = pose_a->scale;
+    bodies.scale[1] = pose_b->scale;
+    bodies.between = scree_vec3_sub(pose_b->position, pose_a->position);
+    bodies.size =
+        scree_vec3_length(bodies.between) + a->bounding_radius * pose_a->scale + b->bounding_radius * pose_b->scale;
+    const scree_real doubt = SCREE_SUPPORT_DOUBT * (bodies.size - scree_vec3_length(bodies.between));
+    const bool is_mapped = a->support_map || b->support_map;
     scree_vec3 d = *direction;
-    if (!(scree_vec3_dot(d, d) > 0)) d = between;
+    if (!(scree_vec3_dot(d, d) > 0)) d = bodies.between;
     for (int32_t round = 0; round < SCREE_SEPARATION_MAX_ROUNDS; ++round)
     {
         const scree_real length = scree_vec3_length(d);
         if (!(length > 0)) return 0;
         d = scree_vec3_scale(d, 1 / length);
-        const scree_vec3 p = scree_posed_support_point(a, &rotation_a, pose_a->scale, d);
-        const scree_vec3 q = scree_posed_support_point(b, &rotation_b, pose_b->scale, scree_vec3_negate(d));
-        const scree_vec3 from_p_to_q = scree_vec3_sub(scree_vec3_add(between, q), p);
-        const scree_real gap = scree_vec3_dot(d, from_p_to_q) - 64 * SCREE_REAL_EPSILON * size;
+        scree_vec3 from_p_to_q;
+        scree_real gap = 0;
+        // all vertices are asked only where the table leaves it open
+        for (bool is_tried = is_mapped, is_open = true; is_open; is_tried = false)
+        {
+            gap = scree_gap_along(&bodies, d, is_tried, &from_p_to_q);
+            is_open = is_tried && gap <= 0 && gap > -doubt;
+        }
         if (gap > 0)
         {
             *direction = d;

@@ -9,6 +9,7 @@
 """
 import argparse
 import json
+import math
 import re
 import sys
 from pathlib import Path
@@ -18,7 +19,8 @@ PAGE = ROOT / "docs" / "theory" / "gpu_cost.md"
 
 # numbers of reals and of other bytes of each type
 TYPES = {"real": (1, 0), "vec3": (3, 0), "quat": (4, 0), "pose": (8, 0), "int32": (0, 4), "int64": (0, 8), "uint8": (0, 1),
-         "pair": (0, 8), "moving": (7, 8), "memory": (0, 8), "sphere": (4, 0)}
+         "pair": (0, 8), "moving": (8, 0), "memory": (0, 8), "sphere": (4, 0), "side": (6, 0),
+         "start": (0, 32)}  # of a record: what is read of it lies in its first sector
 SECTOR = 32  # bytes, the least that a GPU moves
 
 # Kernels of the steady step of polyhedra, one launch each. `own`: arrays at the index itself, each byte once. `far`: arrays
@@ -47,12 +49,14 @@ KERNELS = [
      dict(own="bodies:pair volume:real indentation:real radius:real normal:vec3 arm:vec3 old_of_contact:int64 spring_force:vec3*2 "
               "tangential_stiffness:real*2 torsion:real*2 spring_energy:real*2 elastic_energy:real*2 "
               "normal_force:vec3 tangential_force:vec3 elastic_force:real moment:vec3 elastic_work:real spring_work:real "
-              "is_slipping:uint8 is_turning:uint8",
-          near="pose:pose moving:moving",
-          far="pose:pose moving:moving"), 589),
-    ("scree_gather", "particle", "src/forces/gather_kernel.h", dict(own="row_begin:int64 mass:real force:vec3 torque:vec3 pose:pose"), 59),
-    ("scree_gather, per contact and side", "side", "src/forces/gather_kernel.h",
-     dict(own="row_pairs:int32", far="first_of_pair:int64 bodies:pair normal_force:vec3 tangential_force:vec3 arm:vec3 moment:vec3 pose:pose"), 52),
+              "is_slipping:uint8 is_turning:uint8 sides:side*2",
+          near="pose:start moving:moving",
+          far="pose:start moving:moving"), 589),
+    ("scree_gather", "particle", "src/forces/gather_kernel.h",
+     dict(own="row_begin:int64 own_begin:int32 mass:real force:vec3 torque:vec3", far="first_of_pair:int64"), 59),
+    # a row holds all candidates, touching or not; where a particle is the first body its contacts stand next to each other
+    ("scree_gather, per candidate", "pair", "src/forces/gather_kernel.h", dict(own="row_pairs:int32", far="first_of_pair:int64"), 10),
+    ("scree_gather, per contact", "contact", "src/forces/gather_kernel.h", dict(own="sides:side", far="sides:side"), 84),
     ("scree_correct", "particle", "src/dynamics/integrator_kernel.h",
      dict(own="mass:real force:vec3 torque:vec3 velocity:vec3*2 angular_momentum:vec3*2 inertia:vec3 orientation:quat moving:real*6"),
      185),
@@ -83,7 +87,7 @@ STAGES = {"predict": ("scree_predict",), "travel": ("scree_travel",),
           "correct": ("scree_correct",), "work": ("scree_work",)}
 
 # the packing that is predicted
-COUNTS = {"particle": 1e6, "pair": 8e6, "contact": 4e6, "side": 8e6}
+COUNTS = {"particle": 1e6, "pair": 8e6, "contact": 4e6}
 
 # name: GB/s, multiprocessors, GHz (boost), double and single operations per multiprocessor and clock (NVIDIA's data sheets)
 GPUS = {"V100 SXM2": (900, 80, 1.53, 32, 64), "A100 SXM 80 GB": (2039, 108, 1.41, 32, 64),
@@ -109,14 +113,19 @@ def items(text):
         yield name, kind, int(num or 1)
 
 
+def sectors_of(size):
+    """Sectors that a record of an array of them lies in, on average over the places where one begins."""
+    step = math.gcd(size, SECTOR)
+    starts = range(0, SECTOR, step)
+    return sum(-(-(start + size) // SECTOR) for start in starts) / len(starts)
+
+
 def bytes_of(arrays, precision, pairs_per_particle):
     """Bytes per index of a kernel."""
     total = sum(num * size_of(kind, precision) for _, kind, num in items(arrays.get("own", "")))
     total += sum(num * size_of(kind, precision) for _, kind, num in items(arrays.get("near", ""))) / pairs_per_particle
     for _, kind, num in items(arrays.get("far", "")):
-        size = size_of(kind, precision)
-        # a record begins anywhere at a multiple of its parts
-        total += num * SECTOR * (1 + (size - min(size, 8 if precision == "double" else 4)) / SECTOR)
+        total += num * sectors_of(size_of(kind, precision)) * SECTOR
     return total
 
 
@@ -169,7 +178,7 @@ def without_moments(arrays):
 
 def stage_bytes(case, precision):
     """Bytes that a step of a measured bed moves in each stage, by the model."""
-    num = {"particle": case["particles"], "pair": case["pairs"], "contact": case["contacts"], "side": 2 * case["contacts"]}
+    num = {"particle": case["particles"], "pair": case["pairs"], "contact": case["contacts"]}
     kernels = KERNELS
     if case["name"] == "sphere":
         kernels = SPHERE_KERNELS + [(name, per, source, without_moments(arrays), count) for name, per, source, arrays, count in KERNELS

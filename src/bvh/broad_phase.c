@@ -18,7 +18,6 @@ struct scree_broad_phase_buffers
 {
     scree_sort_buffers sort; ///< keys of pairs
     int64_t *num_keys;       ///< counts the pairs of a search
-    int32_t *first_as_i;     ///< (max_bodies + 1)
     int32_t *first_as_j;     ///< (max_bodies + 1)
     int64_t max_pairs;
     int64_t max_bodies;
@@ -33,7 +32,7 @@ void scree_broad_phase_destroy(scree_broad_phase *broad_phase)
     {
         scree_sort_destroy(&broad_phase->buffers->sort);
         scree_device_free(device, broad_phase->buffers->num_keys);
-        scree_device_free(device, broad_phase->buffers->first_as_i);
+        scree_device_free(device, broad_phase->own_begin);
         scree_device_free(device, broad_phase->buffers->first_as_j);
         free(broad_phase->buffers);
     }
@@ -61,12 +60,12 @@ static scree_status reserve_bodies(scree_broad_phase *broad_phase, int64_t num_b
     scree_device *device = broad_phase->device;
     if (num_bodies <= b->max_bodies && broad_phase->row_begin != NULL) return SCREE_OK;
     const int64_t max_bodies = scree_buffer_grown(num_bodies);
-    int32_t *first_as_i = scree_device_alloc(device, max_bodies + 1, sizeof *first_as_i);
+    int32_t *own_begin = scree_device_alloc(device, max_bodies + 1, sizeof *own_begin);
     int32_t *first_as_j = scree_device_alloc(device, max_bodies + 1, sizeof *first_as_j);
     int64_t *row_begin = scree_device_alloc(device, max_bodies + 1, sizeof *row_begin);
-    if (first_as_i == NULL || first_as_j == NULL || row_begin == NULL)
+    if (own_begin == NULL || first_as_j == NULL || row_begin == NULL)
     {
-        scree_device_free(device, first_as_i);
+        scree_device_free(device, own_begin);
         scree_device_free(device, first_as_j);
         scree_device_free(device, row_begin);
         return SCREE_OUT_OF_MEMORY;
@@ -75,10 +74,10 @@ static scree_status reserve_bodies(scree_broad_phase *broad_phase, int64_t num_b
     const size_t num_bytes = (size_t)(b->num_bodies + 1) * sizeof *row_begin;
     if (broad_phase->row_begin != NULL) scree_device_copy(device, row_begin, broad_phase->row_begin, num_bytes);
     else scree_device_zero(device, row_begin, num_bytes);
-    scree_device_free(device, b->first_as_i);
+    scree_device_free(device, broad_phase->own_begin);
     scree_device_free(device, b->first_as_j);
     scree_device_free(device, broad_phase->row_begin);
-    b->first_as_i = first_as_i;
+    broad_phase->own_begin = own_begin;
     b->first_as_j = first_as_j;
     broad_phase->row_begin = row_begin;
     b->max_bodies = max_bodies;
@@ -140,7 +139,7 @@ static int64_t find_keys(scree_broad_phase *broad_phase, const scree_broad_phase
 static void fill_pairs_and_rows(scree_broad_phase *broad_phase, int64_t num_pairs, int64_t num_bodies)
 {
     struct scree_broad_phase_buffers *b = broad_phase->buffers;
-    scree_pair_rows_args args = {b->sort.keys,  b->sort.spare_keys,     broad_phase->pairs,     b->first_as_i,
+    scree_pair_rows_args args = {b->sort.keys,  b->sort.spare_keys,     broad_phase->pairs,     broad_phase->own_begin,
                                  b->first_as_j, broad_phase->row_begin, broad_phase->row_pairs, num_pairs,
                                  num_bodies,    count_bits(num_bodies)};
     scree_device *device = broad_phase->device;

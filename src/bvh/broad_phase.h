@@ -40,6 +40,7 @@ typedef struct scree_broad_phase
     int64_t num_pairs;
     int64_t *row_begin;                        ///< (num_bodies + 1) start of each body's row in row_pairs
     int32_t *row_pairs;                        ///< (2 num_pairs) for each body the indices of its pairs, ascending
+    int32_t *own_begin;                        ///< (num_bodies + 1) first pair in which a body is the first one
     struct scree_broad_phase_buffers *buffers; ///< internal
 } scree_broad_phase;
 

@@ -23,6 +23,8 @@ scree_status scree_reserve_contact_sums(scree_simulation *simulation)
         status = scree_device_reserve(s->device, &b->is_continued, &b->max_old, num_old, sizeof *b->is_continued);
     if (status == SCREE_OK)
         status = scree_device_reserve(s->device, &b->work_sums, &b->max_work_sums, num_sums, sizeof *b->work_sums);
+    if (status == SCREE_OK && s->device != NULL)
+        status = scree_device_reserve(s->device, &b->sides, &b->max_sides, num, 2 * sizeof *b->sides);
     if (status == SCREE_OK) status = scree_reserve_wall_loads(simulation);
     return status;
 }
@@ -137,12 +139,17 @@ void scree_update_forces(scree_simulation *simulation)
     force.laws = simulation->laws;
     force.num_materials = simulation->num_materials;
     force.time_step = (scree_real)simulation->time_step;
+    force.sides = b->sides;
+    force.max_sides = b->max_sides;
     scree_contact_force_launch_on(simulation->device, force, simulation->contacts.num_contacts);
     scree_stage_end(&simulation->clock, SCREE_STAGE_FORCES);
 
     const double *gravity = simulation->scene->gravity;
     scree_gather_args gather;
     gather.contacts = scree_contact_list_view(&simulation->contacts);
+    gather.sides = b->sides;
+    gather.max_sides = b->max_sides;
+    gather.own_begin = simulation->broad_phase.own_begin;
     gather.row_begin = simulation->broad_phase.row_begin;
     gather.row_pairs = simulation->broad_phase.row_pairs;
     gather.pose = b->pose;

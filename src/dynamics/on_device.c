@@ -47,7 +47,7 @@ scree_device_memory scree_device_memory_of(const scree_simulation *simulation)
     scree_device_memory memory;
     memory.per_particle = (int64_t)(bytes.state + bytes.search);
     memory.per_pair = (int64_t)(SLACK * (double)((size_t)scree_plan_largest_pair(&bytes) + lists));
-    memory.per_contact = (int64_t)(SLACK * (double)bytes.contact);
+    memory.per_contact = (int64_t)(SLACK * (double)(bytes.contact + 2 * sizeof(scree_contact_side)));
     const int64_t num = simulation->particles.num_particles, num_pairs = simulation->counters.num_pairs,
                   num_contacts = simulation->counters.num_contacts;
     memory.num_pairs = num_pairs > BED_PAIRS * num ? num_pairs : BED_PAIRS * num;

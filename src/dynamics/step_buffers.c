@@ -113,6 +113,7 @@ void scree_step_buffers_destroy(scree_simulation *simulation)
                             b->load_sums,
                             b->old_of_contact,
                             b->is_continued,
+                            b->sides,
                             b->wall_motion,
                             b->board};
     for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; ++k) scree_device_free(device, arrays[k]);

@@ -55,6 +55,8 @@ typedef struct scree_step_buffers
     int64_t max_contacts;
     uint8_t *is_continued;
     int64_t max_old;
+    scree_contact_side *sides;  ///< (num_contacts, 2) on a GPU; else NULL
+    int64_t max_sides;          ///< contacts
     scree_work_sums *work_sums; ///< of blocks of ended contacts, of blocks of contacts, and of these sums
     int64_t max_work_sums;
     int64_t num_ended_blocks;

@@ -5,6 +5,7 @@
 
 #include "contact/contact_list.h"
 #include "forces/contact_law_kernel.h"
+#include "forces/contact_side.h"
 #include "forces/moving_body.h"
 
 /// Bodies as the forces see them: particles first, then walls; all (num_bodies).
@@ -57,6 +58,10 @@ typedef struct scree_contact_force_args
     const scree_force_law *laws; ///< (num_materials, num_materials)
     int32_t num_materials;
     scree_real time_step; ///< [s]
+    /// (2, max_sides) out, on all i, on all j, for the gathering; NULL on the CPU. There it makes them itself; a GPU
+    /// waits for memory, and one record is less than all that it is made of.
+    scree_contact_side *sides;
+    int64_t max_sides;
 } scree_contact_force_args;
 
 /// Radius R* and inertia of rolling of a contact, those of the spheres of equal volume.
@@ -67,6 +72,24 @@ SCREE_FN void scree_rolling_pair(const scree_body_motion *bodies, int32_t i, int
     // 1/(7/5 m R^2) of each
     k->rolling_inertia = (scree_real)1.4 / (bodies->moving[i].inverse_mass * i_over_r * i_over_r +
                                             bodies->moving[j].inverse_mass * j_over_r * j_over_r);
+}
+
+/// What contact c exerts on its two bodies.
+SCREE_FN void scree_write_sides(const scree_contact_force_args *a, int64_t c, scree_candidate_pair pair,
+                                const scree_contact_force *f)
+{
+    scree_contact_place place;
+    place.own_arm = a->contacts.arm[c];
+    place.first = a->bodies.pose[pair.i].position;
+    const scree_vec3 on_first = scree_vec3_add(f->normal_force, f->tangential_force);
+    for (int32_t k = 0; k < 2; ++k)
+    {
+        place.body = a->bodies.pose[k == 0 ? pair.i : pair.j].position;
+        place.is_second = k == 1;
+        scree_contact_side side = scree_contact_side_make(place, on_first);
+        if (!a->contacts.acts_in_points) scree_contact_side_turn(&side, place.is_second, f->moment);
+        a->sides[k * a->max_sides + c] = side;
+    }
 }
 
 SCREE_FN void scree_contact_force_at(scree_contact_force_args a, int64_t c)
@@ -133,6 +156,7 @@ SCREE_FN void scree_contact_force_at(scree_contact_force_args a, int64_t c)
     a.contacts.elastic_work[c] = f.elastic_energy - elastic_energy;
     a.contacts.spring_energy[c] = f.spring_energy;
     a.contacts.spring_work[c] = f.spring_energy - spring_energy;
+    if (a.sides) scree_write_sides(&a, c, pair, &f);
     if (!has_extent) return;
     a.contacts.moment[c] = f.moment;
     a.contacts.is_turning[c] = f.is_turning ? 1 : 0;

@@ -1,14 +1,18 @@
 /// \file gather_kernel.h
 /// Force and torque of particle i: the sum over its row of contacts in ascending order, so without atomics and the same
-/// for any number of threads. The forces on the two bodies of a contact are exact opposites.
+/// for any number of threads.
 #ifndef SCREE_GATHER_KERNEL_H
 #define SCREE_GATHER_KERNEL_H
 
 #include "contact/contact_list.h"
+#include "forces/contact_side.h"
 
 typedef struct scree_gather_args
 {
     scree_contact_list contacts;
+    const scree_contact_side *sides; ///< (2, max_sides) of all i, of all j, or NULL: made here
+    int64_t max_sides;
+    const int32_t *own_begin; ///< (num_bodies + 1) first pair in which a body is the first one; for sides
     const int64_t *row_begin; ///< (num_bodies + 1) rows of candidate pairs
     const int32_t *row_pairs; ///< (2 num_pairs)
     const scree_pose *pose;   ///< (num_bodies)
@@ -18,37 +22,57 @@ typedef struct scree_gather_args
     scree_vec3 *torque;       ///< [N m] (num_particles) out, world axes
 } scree_gather_args;
 
-/// Adds contact c to the sums of particle i. Which of its two bodies i is cannot be foreseen: no branch.
+/// Adds contact c to the sums of particle i.
 SCREE_FN void scree_gather_contact(const scree_gather_args *a, int64_t c, int64_t i, scree_vec3 *force,
                                    scree_vec3 *torque)
 {
     const int32_t first = a->contacts.bodies[c].i;
-    const bool is_second = first != (int32_t)i;
-    const scree_vec3 own_arm = a->contacts.arm[c];
-    const scree_vec3 point = scree_vec3_add(a->pose[first].position, own_arm);
-    const scree_vec3 arm = scree_vec3_select(is_second, scree_vec3_sub(point, a->pose[i].position), own_arm);
+    scree_contact_place place;
+    place.own_arm = a->contacts.arm[c];
+    place.first = a->pose[first].position;
+    place.body = a->pose[i].position;
+    place.is_second = first != (int32_t)i;
     const scree_vec3 on_first = scree_vec3_add(a->contacts.normal_force[c], a->contacts.tangential_force[c]);
-    const scree_vec3 f = scree_vec3_select(is_second, scree_vec3_negate(on_first), on_first);
-    scree_vec3 t = scree_vec3_cross(arm, f);
-    if (!a->contacts.acts_in_points)
+    scree_contact_side side = scree_contact_side_make(place, on_first);
+    if (!a->contacts.acts_in_points) scree_contact_side_turn(&side, place.is_second, a->contacts.moment[c]);
+    *force = scree_vec3_add(*force, side.force);
+    *torque = scree_vec3_add(*torque, side.torque);
+}
+
+SCREE_FN void scree_gather_side(const scree_contact_side *side, scree_vec3 *force, scree_vec3 *torque)
+{
+    *force = scree_vec3_add(*force, side->force);
+    *torque = scree_vec3_add(*torque, side->torque);
+}
+
+/// The same for all contacts of particle i, whose sides are there. Its row begins with the pairs in which it is the
+/// second body. Where it is the first one, pairs and contacts stand next to each other: no row is needed.
+SCREE_FN void scree_gather_sides(const scree_gather_args *a, int64_t i, scree_vec3 *force, scree_vec3 *torque)
+{
+    const int64_t *first_of_pair = a->contacts.first_of_pair;
+    const int32_t own_begin = a->own_begin[i], own_end = a->own_begin[i + 1];
+    for (int64_t k = a->row_begin[i]; k < a->row_begin[i + 1] - (own_end - own_begin); ++k)
     {
-        const scree_vec3 moment = a->contacts.moment[c];
-        t = scree_vec3_add(t, scree_vec3_select(is_second, scree_vec3_negate(moment), moment));
+        const int32_t p = a->row_pairs[k];
+        for (int64_t c = first_of_pair[p]; c < first_of_pair[p + 1]; ++c)
+            scree_gather_side(a->sides + a->max_sides + c, force, torque);
     }
-    *force = scree_vec3_add(*force, f);
-    *torque = scree_vec3_add(*torque, t);
+    for (int64_t c = first_of_pair[own_begin]; c < first_of_pair[own_end]; ++c)
+        scree_gather_side(a->sides + c, force, torque);
 }
 
 SCREE_FN void scree_gather_at(scree_gather_args a, int64_t i)
 {
     scree_vec3 force = scree_vec3_scale(a.gravity, a.mass[i]);
     scree_vec3 torque = scree_vec3_zero();
-    for (int64_t k = a.row_begin[i]; k < a.row_begin[i + 1]; ++k)
-    {
-        const int32_t p = a.row_pairs[k];
-        for (int64_t c = a.contacts.first_of_pair[p]; c < a.contacts.first_of_pair[p + 1]; ++c)
-            scree_gather_contact(&a, c, i, &force, &torque);
-    }
+    if (a.sides) scree_gather_sides(&a, i, &force, &torque);
+    else
+        for (int64_t k = a.row_begin[i]; k < a.row_begin[i + 1]; ++k)
+        {
+            const int32_t p = a.row_pairs[k];
+            for (int64_t c = a.contacts.first_of_pair[p]; c < a.contacts.first_of_pair[p + 1]; ++c)
+                scree_gather_contact(&a, c, i, &force, &torque);
+        }
     a.force[i] = force;
     a.torque[i] = torque;
 }

@@ -292,10 +292,11 @@ static void test_history()
 
 // ---- forces
 
-static void test_forces()
+/// `has_sides`: on the device the gathering reads what the forces leave for it; elsewhere it makes that itself.
+static void compare_forces(bool has_sides)
 {
     check_two_sides(
-        [](side &where)
+        [has_sides](side &where)
         {
             const int64_t num_pairs = s->broad_phase.num_pairs, n = s->contacts.num_contacts;
             scree_contact_force_args force;
@@ -306,6 +307,8 @@ static void test_forces()
             force.laws = where.copy(s->laws, s->num_materials * s->num_materials);
             force.num_materials = s->num_materials;
             force.time_step = (scree_real)s->time_step;
+            force.sides = has_sides && where.is_device ? where.make<scree_contact_side>(2 * (n + 5)) : nullptr;
+            force.max_sides = n + 5;
             LAUNCH_ON(where, scree_contact_force, force, n);
             where.keep(force.contacts.normal_force, n);
             where.keep(force.contacts.tangential_force, n);
@@ -317,6 +320,9 @@ static void test_forces()
 
             scree_gather_args gather;
             gather.contacts = force.contacts;
+            gather.sides = force.sides;
+            gather.max_sides = force.max_sides;
+            gather.own_begin = where.copy(s->broad_phase.own_begin, num_bodies + 1);
             gather.row_begin = where.copy(s->broad_phase.row_begin, num_bodies + 1);
             gather.row_pairs = where.copy(s->broad_phase.row_pairs, 2 * num_pairs);
             gather.pose = force.bodies.pose;
@@ -328,6 +334,12 @@ static void test_forces()
             where.keep(gather.force, num_particles);
             where.keep(gather.torque, num_particles);
         });
+}
+
+static void test_forces()
+{
+    compare_forces(false);
+    compare_forces(true);
 }
 
 static void test_work()

@@ -36,6 +36,8 @@ def test_arrays_of_the_source_are_in_the_model(source):
     # one per 256 contacts, area and torque vectors are for one force law, shapes for gaps that are used up and where pairs are told apart by their work, rolling moments for rolling resistance
     elsewhere = {"boxes", "centres", "radii", "pairs", "patch", "arm", "old_patch", "old_arm", "old_bodies", "sums",
                  "area_vector", "torque_vector", "kept_levers", "shape", "shapes", "rolling_moment", "slices", "laws"}
+    if source.endswith("gather_kernel.h"):
+        elsewhere |= {"bodies", "normal_force", "tangential_force", "moment", "pose"}  # only where the forces leave no sides: on the CPU
     assert used - known <= elsewhere, f"{source} also uses {sorted(used - known - elsewhere)}: put them into tools/gpu_cost.py"
 
 
@@ -55,11 +57,17 @@ def measured(**case):
                             "device": {"name": "some GPU", "copy_bytes_per_second": 2e9, "scene_bytes": 1_000_000, "free_bytes": 9_000_000}}, **case)]}
 
 
+def test_sectors():
+    # a vector of doubles begins at 0, 8, 16 or 24 of a sector; one cache line is two
+    assert [gpu_cost.sectors_of(size) for size in (8, 24, 32, 48, 64)] == [1, 1.5, 1, 2, 2]
+    assert gpu_cost.sectors_of(12) == (6 * 1 + 2 * 2) / 8
+
+
 def test_achieved_is_bytes_over_time():
     rows = dict(re.findall(r"^\| (\w+) \| 1.000 \|(.*)\|$", gpu_cost.table_achieved(measured()), re.MULTILINE))
-    # 408 bytes of each of a thousand in a millisecond, a fifth of what a copy moves; gathering by particle and by side of a contact
+    # 408 bytes of each of a thousand in a millisecond, a fifth of what a copy moves; gathering by particle, by candidate and by contact
     assert rows["predict"].split(" | ") == [" 0.4", "0.4", "20 % "]
-    assert rows["gather"].split(" | ")[0] == f" {(128 * 1000 + 348 * 8000) / 1e6:.1f}"
+    assert rows["gather"].split(" | ")[0] == f" {(100 * 1000 + 36 * 8000 + 112 * 4000) / 1e6:.1f}"
     assert not rows["search"].replace("|", "").strip() and not rows["other"].replace("|", "").strip()
 
 
@@ -73,7 +81,7 @@ def test_spheres_move_less_than_meshes():
     mesh, sphere = (gpu_cost.stage_bytes(measured(name=name)["cases"][0], "double") for name in ("schoenhardt", "sphere"))
     # a contact of points: neither moment nor radius; two torsions of the history, and the mark
     assert mesh["forces"] - sphere["forces"] == 4000 * (8 + 24 + 2 * 8 + 1)
-    assert mesh["gather"] - sphere["gather"] == 8000 * 48 and mesh["predict"] == sphere["predict"]
+    assert mesh["gather"] == sphere["gather"] and mesh["predict"] == sphere["predict"]
     assert sphere["contacts"] < mesh["contacts"]
 
 

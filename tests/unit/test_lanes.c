@@ -183,6 +183,8 @@ static scree_contact_force_args force_args(void)
     force.laws = s->laws;
     force.num_materials = s->num_materials;
     force.time_step = (scree_real)s->time_step;
+    force.sides = NULL;
+    force.max_sides = 0;
     return force;
 }
 
@@ -215,6 +217,9 @@ static void test_sums(void)
     const scree_contact_force_args force = force_args();
     scree_gather_args gather;
     gather.contacts = force.contacts;
+    gather.sides = NULL;
+    gather.max_sides = 0;
+    gather.own_begin = NULL;
     gather.row_begin = s->broad_phase.row_begin;
     gather.row_pairs = s->broad_phase.row_pairs;
     gather.pose = s->buffers->pose;

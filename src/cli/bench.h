@@ -108,6 +108,12 @@ typedef struct scree_bench_bodies
 /// touch than wanted.
 scree_status scree_bench_bed_create(scree_bench_bodies *bodies, const scree_bench_bed *bed, scree_report *report);
 void scree_bench_bed_destroy(scree_bench_bodies *bodies);
+/// The bodies of a simulation to the places that those of another have.
+scree_status scree_bench_copy_places(scree_simulation *s, const scree_simulation *from, scree_report *report);
+
+/// Beads at rest in a drum of meshes with lifters, filled as scenes/tumbling_mill_full.yaml: in drums[0] without the
+/// walls, in drums[1] with them, in the same places. Each to be destroyed as a bed.
+scree_status scree_bench_drum_create(scree_bench_bodies drums[2], int64_t num_beads, scree_report *report);
 
 /// Measures steps of a simulation: the case, with times per stage, touching pair and candidate, and bytes. NULL if a
 /// step fails. With search_every > 0 candidate pairs are searched that often.

@@ -335,8 +335,7 @@ static scree_status make_scene(scree_bench_bodies *bodies, const scree_bench_bed
 /// Volume of the bodies over that of the tile at the start, somewhat above what they jam at.
 static double first_density(const char *shape) { return strcmp(shape, "cube") == 0 ? 0.8 : 0.62; }
 
-/// The bodies to the places that those of another bed have.
-static scree_status copy_places(scree_simulation *s, const scree_simulation *from, scree_report *report)
+scree_status scree_bench_copy_places(scree_simulation *s, const scree_simulation *from, scree_report *report)
 {
     const size_t num = (size_t)s->particles.num_particles;
     memcpy(s->particles.position, from->particles.position, num * sizeof *s->particles.position);
@@ -354,7 +353,7 @@ scree_status scree_bench_bed_create(scree_bench_bodies *bodies, const scree_benc
     const int64_t row = needed < 4 ? 4 : needed < TILE ? needed : TILE;
     if (status == SCREE_OK && bed->like != NULL)
     {
-        status = copy_places(bodies->simulation, bed->like, report);
+        status = scree_bench_copy_places(bodies->simulation, bed->like, report);
         if (status != SCREE_OK) scree_bench_bed_destroy(bodies);
         return status;
     }

@@ -63,9 +63,16 @@ static const saving savings[] = {
     {"- all of these", "compare_spheres: false, find_separation: false, reuse_pairs: false"},
 };
 
-/// The case of a bed without one piece of avoided work. It is measured in turn with the bed that has it, so that both
-/// meet the same state of the machine; the spread is that of the ratios.
-static json_t *measure_saving(const scree_bench *bench, scree_simulation *reference, scree_simulation *without)
+/// A simulation and on how many threads its steps are done.
+typedef struct bench_way
+{
+    scree_simulation *simulation;
+    int threads;
+} bench_way;
+
+/// Steps done in one way, measured in turn with another, so that both meet the same state of the machine: the case of
+/// `way` with the median ratio of times of `kind` ("core_seconds" or "wall_seconds"). The spread is that of the ratios.
+static json_t *measure_in_turn(const scree_bench *bench, bench_way reference, bench_way way, const char *kind)
 {
     scree_bench_request once = *bench->request;
     once.repetitions = 1;
@@ -75,14 +82,17 @@ static json_t *measure_saving(const scree_bench *bench, scree_simulation *refere
     for (int64_t r = 0; r < bench->request->repetitions && is_complete; ++r)
     {
         json_decref(measured);
-        json_t *before = scree_bench_steps(reference, &once, bench->report);
-        measured = scree_bench_steps(without, &once, bench->report);
+        omp_set_num_threads(reference.threads);
+        json_t *before = scree_bench_steps(reference.simulation, &once, bench->report);
+        omp_set_num_threads(way.threads);
+        measured = scree_bench_steps(way.simulation, &once, bench->report);
         is_complete = before != NULL && measured != NULL;
         if (is_complete)
-            ratios[r] = json_number_value(json_object_get(measured, "core_seconds")) /
-                        json_number_value(json_object_get(before, "core_seconds"));
+            ratios[r] =
+                json_number_value(json_object_get(measured, kind)) / json_number_value(json_object_get(before, kind));
         json_decref(before);
     }
+    omp_set_num_threads((int)bench->request->threads);
     if (is_complete)
     {
         const scree_bench_samples samples = {ratios, (int)bench->request->repetitions};
@@ -91,6 +101,11 @@ static json_t *measure_saving(const scree_bench *bench, scree_simulation *refere
         json_object_set_new(measured, "spread", json_real(scree_bench_spread(samples)));
         json_object_set_new(measured, "repetitions", json_integer(samples.num));
     }
+    else
+    {
+        json_decref(measured);
+        measured = NULL;
+    }
     free(ratios);
     return measured;
 }
@@ -98,6 +113,7 @@ static json_t *measure_saving(const scree_bench *bench, scree_simulation *refere
 static scree_status add_savings(scree_bench *bench, scree_bench_bed bed, const char *name)
 {
     scree_bench_bodies reference;
+    const int threads = (int)bench->request->threads;
     scree_status status = scree_bench_bed_create(&reference, &bed, bench->report);
     for (size_t k = 0; k < sizeof savings / sizeof *savings && status == SCREE_OK; ++k)
     {
@@ -108,7 +124,8 @@ static scree_status add_savings(scree_bench *bench, scree_bench_bed bed, const c
         scree_bench_bodies without;
         status = scree_bench_bed_create(&without, &bed, bench->report);
         if (status != SCREE_OK) break;
-        json_t *measured = measure_saving(bench, reference.simulation, without.simulation);
+        json_t *measured = measure_in_turn(bench, (bench_way){reference.simulation, threads},
+                                           (bench_way){without.simulation, threads}, "core_seconds");
         if (measured != NULL) json_object_set_new(measured, "name", json_string(text));
         status = measured != NULL ? scree_bench_add(bench, measured) : SCREE_UNSTABLE;
         scree_bench_bed_destroy(&without);
@@ -148,6 +165,59 @@ scree_status scree_bench_packing(scree_bench *bench)
     return status;
 }
 
+/// The median ratio of the last case.
+static double last_ratio(const scree_bench *bench)
+{
+    const json_t *last = json_array_get(bench->cases, json_array_size(bench->cases) - 1);
+    return json_number_value(json_object_get(last, "times_as_long"));
+}
+
+/// The bed on more threads, in turn with one.
+static scree_status add_threads(scree_bench *bench, const scree_bench_bed *bed)
+{
+    const int threads = bench->request->threads > 1 ? (int)bench->request->threads : 2;
+    scree_bench_bodies bodies;
+    scree_status status = scree_bench_bed_create(&bodies, bed, bench->report);
+    if (status != SCREE_OK) return status;
+    json_t *measured = measure_in_turn(bench, (bench_way){bodies.simulation, 1},
+                                       (bench_way){bodies.simulation, threads}, "wall_seconds");
+    char name[64];
+    snprintf(name, sizeof name, "sphere, %d threads in turn with one", threads);
+    if (measured != NULL) json_object_set_new(measured, "name", json_string(name));
+    status = measured != NULL ? scree_bench_add(bench, measured) : SCREE_UNSTABLE;
+    if (status == SCREE_OK && !bench->is_quiet)
+        printf("%d threads are %.2f times as fast as one\n", threads, 1 / last_ratio(bench));
+    scree_bench_bed_destroy(&bodies);
+    return status;
+}
+
+/// Beads in a drum, without its walls and with them. Fewer, for they have to fall first; at least as many as fit beside
+/// the lifters.
+static scree_status add_drum(scree_bench *bench)
+{
+    const int64_t num_beads = bench->request->particles < 500 ? 200 : bench->request->particles * 2 / 5;
+    const int threads = (int)bench->request->threads;
+    scree_bench_bodies drums[2];
+    scree_status status = scree_bench_drum_create(drums, num_beads, bench->report);
+    if (status != SCREE_OK) return status;
+    json_t *bare = scree_bench_steps(drums[0].simulation, bench->request, bench->report);
+    if (bare != NULL) json_object_set_new(bare, "name", json_string("beads of a drum, no walls"));
+    status = bare != NULL ? scree_bench_add(bench, bare) : SCREE_UNSTABLE;
+    json_t *measured = status == SCREE_OK ? measure_in_turn(bench, (bench_way){drums[0].simulation, threads},
+                                                            (bench_way){drums[1].simulation, threads}, "core_seconds")
+                                          : NULL;
+    if (measured != NULL) json_object_set_new(measured, "name", json_string("beads in a drum of meshes"));
+    if (status == SCREE_OK) status = measured != NULL ? scree_bench_add(bench, measured) : SCREE_UNSTABLE;
+    if (status == SCREE_OK && !bench->is_quiet)
+        printf(
+            "walls of meshes take %.0f %% on top in the drum of %lld beads, with %.2f contacts of a bead with them\n",
+            100 * (last_ratio(bench) - 1), (long long)num_beads,
+            (double)(drums[1].simulation->contacts.num_contacts - drums[0].simulation->contacts.num_contacts) /
+                (double)num_beads);
+    for (int k = 0; k < 2; ++k) scree_bench_bed_destroy(drums + k);
+    return status;
+}
+
 scree_status scree_bench_spheres(scree_bench *bench)
 {
     // five contacts each
@@ -155,7 +225,9 @@ scree_status scree_bench_spheres(scree_bench *bench)
     scree_bench_set_columns(bench, scree_bench_step_columns, scree_bench_num_step_columns);
     scree_status status = add_bed(bench, &bed, "sphere");
     if (status == SCREE_OK && bench->request->shows_savings) status = add_savings(bench, bed, "sphere");
-    return status;
+    if (status != SCREE_OK || bench->request->device >= 0) return status;
+    status = add_threads(bench, &bed);
+    return status == SCREE_OK ? add_drum(bench) : status;
 }
 
 /// How one bed's cost grows with its bodies, and falls with threads.

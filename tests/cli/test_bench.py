@@ -85,6 +85,22 @@ def test_order_changes_no_contact(order):
     assert other["contacts"] == lattice["contacts"]
 
 
+def test_spheres_on_threads_and_in_a_drum():
+    cases = result_of("spheres", *BED)["cases"]
+    assert [case["name"] for case in cases] == [
+        "sphere", "sphere, 2 threads in turn with one", "beads of a drum, no walls", "beads in a drum of meshes"]
+    assert [case["threads"] for case in cases] == [1, 2, 1, 1]
+    bed, threads, bare, drum = cases
+    # the same bed; the same beads, which touch walls besides each other: the shell below them and both ends
+    assert threads["contacts"] == bed["contacts"] and threads["pairs"] == bed["pairs"]
+    assert bare["particles"] == drum["particles"] == 200
+    assert bare["contacts"] + 20 < drum["contacts"] < 2 * bare["contacts"]
+    assert threads["times_as_long"] > 0 and drum["times_as_long"] > 0
+    assert "times_as_long" not in bed and "times_as_long" not in bare
+    run = bench("spheres", *BED, "--threads", 3)
+    assert "3 threads are" in run.stdout and "on top in the drum of 200 beads" in run.stdout and not run.stderr
+
+
 def test_scaling():
     cases = result_of("scaling", *BED, "--shape", "sphere", "--threads", 2)["cases"]
     assert [case["threads"] for case in cases] == [1, 2]

@@ -186,9 +186,33 @@ static int64_t check_lost(const scree_simulation *s, scree_report *report)
     return num;
 }
 
+/// Particles outside of a closed vessel. Returns their number; without a vessel those that fall past all walls.
+static int64_t check_outside(const scree_simulation *s, scree_report *report, scree_status *status)
+{
+    const int64_t num_particles = s->particles.num_particles;
+    bool *is_outside = malloc((size_t)num_particles + 1);
+    int32_t vessel = -1;
+    *status = is_outside != NULL ? scree_find_outside_of_vessels(s, &vessel, is_outside) : SCREE_OUT_OF_MEMORY;
+    int64_t num = 0;
+    for (int64_t i = 0; *status == SCREE_OK && vessel >= 0 && i < num_particles; ++i)
+    {
+        if (!is_outside[i] || ++num > MAX_TOLD) continue;
+        scree_report_add(
+            report,
+            "%s is outside of the closed %s, which is hollow to hold particles; move it inside, or, if the "
+            "wall is in their way, take away its inner surface",
+            describe(s, i).text, describe_body(s, num_particles + vessel).text);
+    }
+    free(is_outside);
+    tell_more(report, num, "are outside of the closed wall");
+    return *status == SCREE_OK && vessel < 0 ? check_lost(s, report) : num;
+}
+
 scree_status scree_check_start(const scree_simulation *simulation, scree_report *report)
 {
+    scree_status status = SCREE_OK;
     const int64_t num_faults = check_contacts(simulation, report) + check_centres(simulation, report) +
-                               check_solids(simulation, report) + check_lost(simulation, report);
+                               check_solids(simulation, report) + check_outside(simulation, report, &status);
+    if (status != SCREE_OK) return status;
     return num_faults > 0 ? SCREE_INVALID_INPUT : SCREE_OK;
 }

@@ -6,10 +6,16 @@
 #include "dynamics/state.h"
 
 /// Call with bodies placed and contacts found. Refused: particles too deep in others or wholly inside the solid of a
-/// wall, spheres with the same centre, particles at rest that would fall past all walls.
+/// wall, spheres with the same centre, particles outside of a closed vessel or at rest where they would fall past all
+/// walls.
 scree_status scree_check_start(const scree_simulation *simulation, scree_report *report);
 
-/// Refused: walls that reach into each other and move differently. Call with walls placed.
+/// Refused: walls that reach into each other and move differently. Told: walls that touch at the start and part later.
+/// Call with walls placed.
 scree_status scree_check_walls(const scree_simulation *simulation, scree_report *report);
+
+/// Which particles are in no closed vessel: is_outside (num_particles), not touched if no wall is one. `vessel` gets
+/// the last wall that is, or -1. SCREE_OUT_OF_MEMORY.
+scree_status scree_find_outside_of_vessels(const scree_simulation *simulation, int32_t *vessel, bool *is_outside);
 
 #endif

@@ -450,6 +450,7 @@ static const cyaml_schema_field_t motion_fields[] = {WORD(scree_motion_def, kind
                                                      NUMBER(scree_motion_def, angular_velocity),
                                                      NUMBER(scree_motion_def, start),
                                                      NUMBER(scree_motion_def, end),
+                                                     TRUTH(scree_motion_def, opens),
                                                      CYAML_FIELD_END};
 static const scree_scene_key motion_keys[] = {
     {.name = "kind", .default_text = "fixed", .meaning = "how the wall moves between start and end"},
@@ -484,6 +485,10 @@ static const scree_scene_key motion_keys[] = {
      .min = 0,
      .max = MAX_TIME,
      .meaning = "at rest from then on"},
+    {.name = "opens",
+     .default_text = "false",
+     .meaning = "whether it is meant to part from walls that it touches at the start, as a door, a gate or a lid: if "
+                "not, a run warns of it"},
 };
 static const scree_scene_section motion_section = {"walls[].motion", "Prescribed motion of a wall.", motion_fields,
                                                    motion_keys, COUNT(motion_keys)};

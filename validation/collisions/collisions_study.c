@@ -1,14 +1,16 @@
 // Many isolated pairs of equal bodies of 0.2 m that fly into each other with 5 m/s each, elastic and without friction,
 // for the study of collisions: one line of output, a JSON object. See README.md.
 //
-// Usage: collisions_study SHAPE MODULUS LAW PAIRS STEPS OFFSET TIME
+// Usage: collisions_study SHAPE MODULUS LAW PAIRS STEPS OFFSET TIME [FILE]
 //   SHAPE    sphere, or sphere:N, rock:N with N triangles, cube
 //   MODULUS  Young's modulus [Pa]
 //   LAW      keys of the contact law, like "model: hertz_mindlin"
 //   PAIRS    number of pairs, each of two random orientations
 //   STEPS    time steps in a central impact of two spheres after Hertz
 //   OFFSET   largest distance of the lines of flight over the radius, at random
-//   TIME     end of the run, in contact times after Hertz
+//   TIME     end of the run, in contact times after Hertz, from where spheres would touch
+//   FILE     kinetic energy over that at the start, as doubles: of all pairs, time by time, and then 1 for each pair
+//            that is in contact at the end, else 0
 #include "scene_run.h"
 
 #include <math.h>
@@ -102,6 +104,19 @@ static double energy_of_pair(const scree_particles *p, int pair)
     return energy / start;
 }
 
+/// Appends a double for each pair.
+static void put_pairs(FILE *file, const double *values, int num_pairs)
+{
+    if (file != NULL) SCREE_CHECK_INT(fwrite(values, sizeof *values, (size_t)num_pairs, file), num_pairs);
+}
+
+static void put_touching(FILE *file, const scree_contact_list *contacts, double *touches, int num_pairs)
+{
+    for (int k = 0; k < num_pairs; ++k) touches[k] = 0;
+    for (int64_t c = 0; c < contacts->num_contacts; ++c) touches[contacts->bodies[c].i / 2] = 1;
+    put_pairs(file, touches, num_pairs);
+}
+
 static void put_list(const char *name, const double *values, int num)
 {
     printf("\"%s\": [", name);
@@ -117,7 +132,7 @@ static int compare(const void *a, const void *b)
 
 int main(int argc, char **argv)
 {
-    if (argc != 8) return 2;
+    if (argc != 8 && argc != 9) return 2;
     const int num_pairs = atoi(argv[4]);
     const double period = contact_time(atof(argv[2])), time_step = period / atof(argv[5]);
     const double end = (start_distance(argv[1]) - 2) * RADIUS / (2 * SPEED) + atof(argv[7]) * period;
@@ -128,7 +143,8 @@ int main(int argc, char **argv)
     if (run.simulation == NULL) return 1;
     static double time[MAX_SAMPLES], mean[MAX_SAMPLES], deviation[MAX_SAMPLES];
     double *ratio = malloc((size_t)num_pairs * sizeof *ratio);
-    if (ratio == NULL) return 1;
+    FILE *file = argc == 9 ? fopen(argv[8], "wb") : NULL;
+    if (ratio == NULL || (argc == 9 && file == NULL)) return 1;
     const int64_t num_steps = scree_simulation_num_steps(run.simulation);
     int num = 0;
     for (int64_t step = 0; step <= num_steps; ++step)
@@ -142,6 +158,7 @@ int main(int argc, char **argv)
             sum += ratio[k];
         }
         for (int k = 0; k < num_pairs; ++k) squares += (ratio[k] - sum / num_pairs) * (ratio[k] - sum / num_pairs);
+        put_pairs(file, ratio, num_pairs);
         time[num] = scree_simulation_time(run.simulation);
         mean[num] = sum / num_pairs;
         deviation[num++] = sqrt(squares / fmax(1, num_pairs - 1));
@@ -161,6 +178,8 @@ int main(int argc, char **argv)
            "%.6g}, \"indentation\": %.6g}\n",
            ratio[0], ratio[num_pairs / 20], ratio[num_pairs / 2], ratio[num_pairs - 1 - num_pairs / 20],
            ratio[num_pairs - 1], sqrt(squares / num_pairs), s->counters.largest_indentation);
+    if (file != NULL) put_touching(file, &s->contacts, ratio, num_pairs);
+    SCREE_CHECK(file == NULL || fclose(file) == 0);
     free(ratio);
     scene_run_end(&run);
     return scree_test_num_failed > 0;

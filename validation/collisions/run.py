@@ -149,7 +149,7 @@ def plot_energy_over_time(lines, prefix, moduli, name, shown):
     side."""
     is_sphere = prefix == "sphere"
     figure, grid = plt.subplots(1 + is_sphere, len(moduli), figsize=(3.3 * len(moduli) + 1, 3.8 + 2.6 * is_sphere),
-                                layout="constrained", sharex="col", sharey="row", squeeze=False)
+                                layout="constrained", sharex="col", squeeze=False)
     for k, modulus in enumerate(moduli):
         chosen = [x for x in select(lines, prefix, modulus) if x["triangles"] in shown]
         for n, x in enumerate(chosen):
@@ -161,7 +161,7 @@ def plot_energy_over_time(lines, prefix, moduli, name, shown):
                 grid[1, k].plot(1e3 * time, mean, color=colour, lw=1.3)
             for side in (mean - deviation, mean + deviation):
                 grid[-1, k].plot(1e3 * time, side, color=colour, lw=0.7, ls=":")
-        grid[0, k].set(title=f"E = {modulus_name(modulus)}")
+        grid[0, k].set(title=f"E = {modulus_name(modulus)}", ylim=(-0.05, 1.35 - 0.25 * is_sphere))
         grid[-1, k].set(xlabel="time [ms]")
         for ax in grid[:, k]:
             ax.grid(alpha=0.3)

@@ -138,9 +138,11 @@ def impact_table(lines):
 
 
 def drop_table(lines):
-    rows = []
-    for line in select(lines, "drop"):
-        if 1 <= line["bounce"] <= 3:
+    """The first three bounces and the last one of each restitution."""
+    rows, drops = [], select(lines, "drop")
+    last = {line["e"]: line["bounce"] for line in drops}
+    for line in drops:
+        if line["bounce"] in (1, 2, 3, last[line["e"]]):
             expected = 0.1 * line["e"] ** (2 * line["bounce"])
             rows.append([line["e"], line["bounce"], f"{expected:.5g}", f"{line['height']:.5g}",
                          f"{line['height'] / expected - 1:+.1e}"])

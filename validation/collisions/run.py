@@ -22,7 +22,7 @@ from study import BUILD, QUICK, Study, build, in_parallel, output_of, plt, table
 STUDY = Study(__file__)
 STORE = STUDY.runs / "lines.jsonl"  # a line for each case that is finished
 PAIRS = 500 if QUICK else 10000
-SINGLE_PAIRS = 100 if QUICK else 1000  # rocks of which the energy of every pair is kept
+SINGLE_PAIRS = 100 if QUICK else 500  # rocks of which the energy of every pair is kept
 SPHERES = (40, 84, 180) if QUICK else (40, 84, 180, 400, 1000)
 ROCKS = (10, 40, 70) if QUICK else (10, 40, 70, 150, 300, 1000)
 SPHERE_MODULI = (1e6, 21.5e6, 1e8, 1e9)

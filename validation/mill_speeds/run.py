@@ -1,7 +1,8 @@
 """Power of a mill over its speed, with and without lifters. Makes README.md and its pictures.
 
 Usage: python run.py [--keep]
-  --keep   pictures and page again from results.json and the runs in runs/mill_speeds, without computing anything
+  --keep   pictures and page again from results.json, without computing anything; the maps are drawn only if their runs are
+           still in runs/mill_speeds
 QUICK=1 in the environment takes every other speed. A study that was broken off goes on where it stopped.
 """
 
@@ -47,8 +48,12 @@ def run(case, percent):
     STUDY.run(ROOT / "scenes" / "tumbling_mill.yaml", f"{case}_{percent}", [f"{key}={value}" for key, value in values.items()])
 
 
+def folder_of(case, percent):
+    return STUDY.runs / f"{case}_{percent}" / "only"
+
+
 def run_of(case, percent):
-    return Run(STUDY.runs / f"{case}_{percent}" / "only")
+    return Run(folder_of(case, percent))
 
 
 def measure(case, percent):
@@ -86,6 +91,9 @@ def draw_power(results):
 
 
 def draw_maps():
+    if not all(folder_of(case, percent).exists() for case in CASES for percent in SHOWN):
+        print("maps.png stays: its runs are gone")
+        return
     figure, axes = plt.subplots(2, len(SHOWN), figsize=(11, 7.4), layout="constrained", sharex=True, sharey=True)
     for row, (case, text) in enumerate(CASES.items()):
         for column, percent in enumerate(SHOWN):
@@ -114,11 +122,29 @@ def numbers(results):
     return table(["share of the critical speed [%]", "with lifters [W]", "power/(m g R ω)", "smooth [W]", "power/(m g R ω)"], rows)
 
 
+def change_of_lever(results):
+    """Of the smooth drum's power/(m g R omega) from the lowest to the highest speed, with its standard error."""
+    first, last = (results[f"without_{p}"] for p in (SPEEDS[0], SPEEDS[-1]))
+    ratio = last["power"] / first["power"] * SPEEDS[0] / SPEEDS[-1]
+    error = ratio * math.hypot(last["error"] / last["power"], first["error"] / first["power"])
+    return f"{100 * (ratio - 1):.0f} ± {100 * error:.0f} %"
+
+
+def crossing(results):
+    """What lifters add to the power at the last speed at which they add some, and at the next one."""
+    differences = {}
+    for percent in SPEEDS:
+        a, b = results[f"with_{percent}"], results[f"without_{percent}"]
+        differences[percent] = (a["power"] - b["power"], math.hypot(a["error"], b["error"]))
+    last = max((p for p in SPEEDS if differences[p][0] > 0), default=SPEEDS[0])
+    return " and ".join(f"{differences[p][0]:+.2f} ± {differences[p][1]:.2f} W at {p} %" for p in SPEEDS[SPEEDS.index(last):][:2])
+
+
 def make_page(results):
     draw_power(results)
     draw_maps()
     rows = [results[f"{case}_{percent}"] for case in CASES for percent in SPEEDS]
-    return {"table": numbers(results), "energy_error": f"{max(abs(row['energy_error']) for row in rows):.0e}",
+    return {"table": numbers(results), "above": change_of_lever(results), "crossing": crossing(results), "energy_error": f"{max(abs(row['energy_error']) for row in rows):.0e}",
             "indentation": f"{100 * max(row['indentation'] for row in rows) / 0.006:.0f}"}
 
 

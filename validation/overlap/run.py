@@ -134,7 +134,8 @@ def time_table(lines):
             return f"{statistics.median(values):.3g}" if values else "-"
 
         def micro(chosen):
-            return f"{1e6 * statistics.median(map(default_seconds, chosen)):.3g}" if chosen else "-"
+            times = [1e6 * default_seconds(x) for x in chosen or []]
+            return f"{statistics.median(times):.3g} ({quantile(times, 0.25):.2g} to {quantile(times, 0.75):.2g})" if times else "-"
 
         refused = sum("cgal_exact_s" not in x for x in members)
         general = ratio("filtered") if "convex_s" in members[0] else "-"
@@ -163,7 +164,7 @@ def growth_table(lines):
                     continue
                 middle = statistics.median(values)
                 first.setdefault((low, high), middle)
-                row.append(f"{1e6 * middle:.3g} ({middle / first[(low, high)]:.2g})")
+                row.append(f"{1e6 * middle:.3g} ({middle / first[(low, high)]:.2g}; {len(values)})")
             rows.append(row)
     header = ["bodies", "triangles each"] + [f"depth {low:g} to {high:g}" for low, high in DEPTHS]
     return table(header, rows)

@@ -74,6 +74,13 @@ def long_runs(lines):
     return own, ends["forward Euler50"], ends["forward Euler5000"], lengths
 
 
+def turns_to_gain(lines, steps_per_turn, share):
+    """Turns in which forward Euler gains a share of the energy, as far as they were told."""
+    turns = [x["turns"] for x in lines if x["part"] == "long" and x["method"] == "forward Euler"
+             and x["steps_per_turn"] == steps_per_turn and x["worst"] > share]
+    return f"{turns[0]:.0f}" if turns else "more than the run's"
+
+
 def make_page(results):
     lines = results["lines"]
     exact = closed_form()
@@ -83,6 +90,7 @@ def make_page(results):
         "exact": f"{exact:.10g}", "orders": rows, "turns": f"{own['turns']:.0f}", "worst": f"{own['worst']:.2e}",
         "worst_of_four": f"{next(x['worst'] for x in lines if x['part'] == 'long' and x['turns'] > 100):.2e}",
         "length": f"{lengths:.1e}", "coarse_turns": f"{coarse['turns']:.0f}", "coarse": f"{coarse['worst']:.2f}",
+        "coarse_gain": turns_to_gain(lines, 50, 0.95), "fine_gain": turns_to_gain(lines, 5000, 0.95),
         "fine_turns": f"{fine['turns']:.0f}", "fine": f"{fine['worst']:.2f}",
         "same": "not one bit" if all(x["same_momentum"] for x in lines if x["part"] == "long") else "A BIT",
     }

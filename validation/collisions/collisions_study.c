@@ -15,6 +15,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <time.h>
 
 #define RADIUS 0.1
 #define SPEED 5.0
@@ -141,7 +142,7 @@ int main(int argc, char **argv)
     scene_run_start(&run, text);
     free(text);
     if (run.simulation == NULL) return 1;
-    static double time[MAX_SAMPLES], mean[MAX_SAMPLES], deviation[MAX_SAMPLES];
+    static double times[MAX_SAMPLES], mean[MAX_SAMPLES], deviation[MAX_SAMPLES];
     double *ratio = malloc((size_t)num_pairs * sizeof *ratio);
     FILE *file = argc == 9 ? fopen(argv[8], "wb") : NULL;
     if (ratio == NULL || (argc == 9 && file == NULL)) return 1;
@@ -159,7 +160,7 @@ int main(int argc, char **argv)
         }
         for (int k = 0; k < num_pairs; ++k) squares += (ratio[k] - sum / num_pairs) * (ratio[k] - sum / num_pairs);
         put_pairs(file, ratio, num_pairs);
-        time[num] = scree_simulation_time(run.simulation);
+        times[num] = scree_simulation_time(run.simulation);
         mean[num] = sum / num_pairs;
         deviation[num++] = sqrt(squares / fmax(1, num_pairs - 1));
     }
@@ -171,9 +172,10 @@ int main(int argc, char **argv)
            argv[1], (int)s->shape_views[0].num_triangles, argv[2], argv[3], num_pairs, argv[5]);
     printf("\"offset\": %s, \"contact_time\": %.8g, \"time_step\": %.8g, \"still_touching\": %d, ", argv[6], period,
            time_step, (int)s->contacts.num_contacts);
-    put_list("time", time, num);
+    put_list("time", times, num);
     put_list("mean", mean, num);
     put_list("deviation", deviation, num);
+    printf("\"seconds\": %.3g, ", (double)clock() / CLOCKS_PER_SEC);
     printf("\"ratio\": {\"min\": %.10g, \"low\": %.10g, \"median\": %.10g, \"high\": %.10g, \"max\": %.10g, \"rms\": "
            "%.6g}, \"indentation\": %.6g}\n",
            ratio[0], ratio[num_pairs / 20], ratio[num_pairs / 2], ratio[num_pairs - 1 - num_pairs / 20],

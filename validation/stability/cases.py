@@ -94,9 +94,10 @@ def cases():
         "deep_conserving": ("the same, energy_conserving", impact("deep_conserving", 10, 0.02, 3e6, CONSERVING)),
         "thin_plate": ("a plate of 1:50 falls on an edge", drop("thin_plate", thin, 0.06, tilted)),
         "needle": ("a needle of 1:50 falls on its tip", drop("needle", needle, 0.06, turned((0.6, 0.8, 0), 65))),
-        "size_ratio": ("a cube of 1 mm falls on a free cube of 1 m", scene("size_ratio", 0.06, [small, big, PLATE], [
-            bodies("small", at((0.1, 0.07, 1.001), orientation=tilted), name="small"),
-            bodies("big", at((0, 0, 0.5)), name="big")], [FLOOR])),
+        # the large one is fixed: all energies are those of the small one
+        "size_ratio": ("a cube of 1 mm falls on a fixed cube of 1 m", scene("size_ratio", 0.06, [small, big], [
+            bodies("small", at((0.1, 0.07, 1.001), orientation=tilted))], [
+            {"name": "big", "shape": "big", "material": "stone", "position": [0, 0, 0.5]}])),
         "rings": ("a ring falls into a fixed one that it is linked with", linked_rings("rings", False)),
         "rings_patches": ("the same, patches as separate contacts", linked_rings("rings_patches", True)),
         "soft": ("a cube of 0.3 MPa on its corner", drop("soft", CUBE, 0.3, turned((0.6, 0.8, 0), 50), end=0.6, modulus=3e5)),
@@ -109,13 +110,16 @@ def cases():
 
 
 def rests():
-    """Name: (what rests, scene) of a million steps or more each."""
+    """Name: (what rests, scene, name of the wall that it stands on) of a million steps or more each."""
+    side, thickness, height = 0.17, 0.05, 1.1
+    inner, outer = (width / math.sqrt(math.pi) for width in (side, side + 2 * thickness))  # radii of circles of the same area
     box = {"name": "box", "source": "turned", "segments": 4, "profile": [
-        {"radius": 0.2, "height": 0}, {"radius": 0.25, "height": 0},
-        {"radius": 0.25, "height": 0.6}, {"radius": 0.2, "height": 0.6}]}
+        {"radius": inner, "height": 0}, {"radius": outer, "height": 0},
+        {"radius": outer, "height": height}, {"radius": inner, "height": height}]}
+    reach = side / 2 - 1e-3
     bed = scene("bed", 1, [ROCK | {"size": 0.05}, box, PLATE], [
-        {"name": "bodies", "shape": "rock", "material": "stone", "count": 20, "seed": 1,
-         "region": {"min": [-0.13, -0.13, 0.01], "max": [0.13, 0.13, 0.6]}}],
-        [FLOOR, {"name": "box", "shape": "box", "material": "stone"}])
-    chosen = {name: cases()[name] for name in ("tower", "wedge")}
-    return chosen | {"bed": ("twenty rocks in a box", bed)}
+        {"name": "bodies", "shape": "rock", "material": "stone", "count": 48, "seed": 1,
+         "region": {"min": [-reach, -reach, 0.01], "max": [reach, reach, height]}}],
+        [FLOOR, {"name": "box", "shape": "box", "material": "stone", "orientation": turned((0, 0, 1), 45)}])
+    return {"tower": (*cases()["tower"], "floor"), "wedge": (*cases()["wedge"], "floor"),
+            "bed": ("48 rocks in a box", bed, "floor")}

@@ -20,13 +20,14 @@ typedef struct scree_overlap_pairs_args
     int32_t num_lanes;   ///< of a team on a GPU: see scree_work_num_lanes(); no result depends on it
 } scree_overlap_pairs_args;
 
-/// Entry m of the batch, worked on by index i of the launch. Without enough room nothing but the lack is noted: the
-/// host makes room and launches again.
-SCREE_FN void scree_overlap_of_pair(const scree_overlap_pairs_args *a, const scree_team *team, int64_t i, int32_t m,
+/// Active entry k of the class, worked on by index i of the launch. Without enough room nothing but the lack is noted:
+/// the host makes room and launches again.
+SCREE_FN void scree_overlap_of_pair(const scree_overlap_pairs_args *a, const scree_team *team, int32_t i, int32_t k,
                                     bool may_separate)
 {
     const scree_mesh_pairs_args *meshes = &a->meshes;
-    const int32_t p = meshes->batch[m];
+    const int32_t *active = scree_active_of_class(meshes, a->work_class);
+    const int32_t p = meshes->batch[active[k]];
     const int32_t body[2] = {meshes->pairs[p].i, meshes->pairs[p].j};
     scree_overlap_pair pair;
     for (int32_t side = 0; side < 2; ++side)
@@ -35,7 +36,7 @@ SCREE_FN void scree_overlap_of_pair(const scree_overlap_pairs_args *a, const scr
         pair.pose[side] = meshes->bodies.pose + body[side];
     }
     scree_overlap_slice *slice = a->slices + i;
-    scree_overlap_result *results = a->results + i * a->max_results;
+    scree_overlap_result *results = a->results + (int64_t)i * a->max_results;
     scree_overlap_options options = a->options;
     options.separate_patches = options.separate_patches && may_separate;
     const int32_t num = scree_overlap_team_compute(team, &pair, &options, slice, results, a->max_results);
@@ -43,34 +44,34 @@ SCREE_FN void scree_overlap_of_pair(const scree_overlap_pairs_args *a, const scr
     if (results[0].status == SCREE_OVERLAP_WORKSPACE_FULL)
         scree_atomic_count(meshes->tally->num_lacking + slice->lack, 1);
     else if (num > a->max_results) scree_atomic_max(&meshes->tally->most_results, (scree_real)num);
-    else scree_mesh_pair_note(meshes, m, results, num);
+    else scree_mesh_pair_note(meshes, scree_active_of_class(meshes, a->work_class)[k], results, num);
 }
 
 /// Index i takes pairs and works on them. `may_separate`: patches may be told apart.
-SCREE_FN void scree_overlap_take_pairs(const scree_overlap_pairs_args *a, const scree_team *team, int64_t i,
+SCREE_FN void scree_overlap_take_pairs(const scree_overlap_pairs_args *a, const scree_team *team, int32_t i,
                                        bool may_separate)
 {
-    const int64_t num_active = a->meshes.tally->num_active[a->work_class];
-    int64_t *num_taken = a->meshes.tally->num_taken + a->work_class;
-    const int32_t *active = scree_active_of_class(&a->meshes, a->work_class);
+    const scree_pair_tally *tally = a->meshes.tally;
     for (;;)
     {
         // the one who leads takes for all; batches have indices of 32 bits
-        int32_t taken = 0;
-        if (scree_team_leads(team)) taken = (int32_t)scree_atomic_count(num_taken, a->num_at_once);
-        const int64_t begin = scree_team_sum(team, taken);
-        if (begin >= num_active) return;
-        for (int64_t k = begin; k < begin + a->num_at_once && k < num_active; ++k)
-        {
-            scree_overlap_of_pair(a, team, i, active[k], may_separate);
+        int32_t k = 0;
+        if (scree_team_leads(team))
+            k = (int32_t)scree_atomic_count(a->meshes.tally->num_taken + a->work_class, a->num_at_once);
+        k = scree_team_sum(team, k);
+        if (k >= tally->num_active[a->work_class]) return;
+        // on a GPU what is held here is held all through an overlap, whose registers it takes
+        do {
+            scree_overlap_of_pair(a, team, i, k, may_separate);
             scree_team_sync(team);
-        }
+            ++k;
+        } while (k % a->num_at_once != 0 && k < tally->num_active[a->work_class]);
     }
 }
 
 SCREE_FN void scree_overlap_pairs_team_at(scree_overlap_pairs_args a, const scree_team *team, int64_t i)
 {
-    scree_overlap_take_pairs(&a, team, i, false);
+    scree_overlap_take_pairs(&a, team, (int32_t)i, false);
 }
 
 SCREE_FN void scree_overlap_pairs_at(scree_overlap_pairs_args a, int64_t i)
@@ -84,7 +85,7 @@ typedef scree_overlap_pairs_args scree_overlap_patches_args;
 
 SCREE_FN void scree_overlap_patches_team_at(scree_overlap_patches_args a, const scree_team *team, int64_t i)
 {
-    scree_overlap_take_pairs(&a, team, i, true);
+    scree_overlap_take_pairs(&a, team, (int32_t)i, true);
 }
 
 SCREE_FN void scree_overlap_patches_at(scree_overlap_patches_args a, int64_t i)

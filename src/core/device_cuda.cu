@@ -236,8 +236,8 @@ bool scree_cuda_records(const scree_device *device) { return device->records && 
 
 void scree_cuda_record(scree_device *device, const scree_live *live)
 {
-    // unsafe calls of this thread break the recording, those of others do not
-    scree_cuda_note(device, cudaStreamBeginCapture(device->stream, cudaStreamCaptureModeThreadLocal));
+    // relaxed, for a kernel may be loaded at its first launch
+    scree_cuda_note(device, cudaStreamBeginCapture(device->stream, cudaStreamCaptureModeRelaxed));
     device->live = live;
 }
 

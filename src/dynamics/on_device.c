@@ -57,6 +57,11 @@ scree_device_memory scree_device_memory_of(const scree_simulation *simulation)
     return memory;
 }
 
+int64_t scree_num_that_fit(const scree_device_memory *memory, int64_t num_particles, int64_t num_free)
+{
+    return (int64_t)((double)num_particles * (double)num_free / (double)memory->total);
+}
+
 // ---- to the device
 
 /// A copy of `num` items on the device; NULL: out of memory.
@@ -174,13 +179,15 @@ static scree_status take_memory(const scree_simulation *s, scree_device *device,
     const scree_device_memory memory = scree_device_memory_of(s);
     const int64_t num_free = scree_device_free_memory(device);
     if (memory.total <= num_free && scree_device_take(device, memory.total)) return SCREE_OK;
-    scree_report_add(report,
-                     "GPU \"%s\" has %.0f MB of free memory, the scene needs about %.0f MB (%lld particles of %lld "
-                     "bytes, %lld candidate pairs of %lld, %lld contacts of %lld): take fewer particles, another GPU, "
-                     "or run on the CPU",
-                     scree_device_name(device), (double)num_free / 1e6, (double)memory.total / 1e6,
-                     (long long)s->particles.num_particles, (long long)memory.per_particle, (long long)memory.num_pairs,
-                     (long long)memory.per_pair, (long long)memory.num_contacts, (long long)memory.per_contact);
+    scree_report_add(
+        report,
+        "GPU \"%s\" has %.0f MB of free memory, the scene needs about %.0f MB (%lld particles of %lld "
+        "bytes, %lld candidate pairs of %lld, %lld contacts of %lld): take fewer particles (about %lld would "
+        "fit), another GPU, or run on the CPU",
+        scree_device_name(device), (double)num_free / 1e6, (double)memory.total / 1e6,
+        (long long)s->particles.num_particles, (long long)memory.per_particle, (long long)memory.num_pairs,
+        (long long)memory.per_pair, (long long)memory.num_contacts, (long long)memory.per_contact,
+        (long long)scree_num_that_fit(&memory, s->particles.num_particles, num_free));
     return SCREE_OUT_OF_MEMORY;
 }
 

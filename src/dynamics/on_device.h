@@ -26,6 +26,8 @@ typedef struct scree_device_memory
 } scree_device_memory;
 
 scree_device_memory scree_device_memory_of(const scree_simulation *simulation);
+/// Particles of a scene like it that have room in num_free bytes.
+int64_t scree_num_that_fit(const scree_device_memory *memory, int64_t num_particles, int64_t num_free);
 /// Prints it against what the device has. `stream` is a FILE *.
 void scree_simulation_print_device_memory(const scree_simulation *simulation, scree_device *device, void *stream);
 

@@ -147,6 +147,9 @@ void scree_simulation_print_device_memory(const scree_simulation *simulation, sc
             "now or\n",
             scree_device_name(device), (long long)memory.per_particle, (long long)memory.per_pair,
             (long long)memory.per_contact, (long long)memory.num_pairs, (long long)memory.num_contacts);
-    fprintf(out, "    in a dense bed, %.3g MB of %.3g MB free: %s\n", (double)memory.total / 1e6, num_free / 1e6,
-            (double)memory.total <= num_free ? "fits" : "does not fit");
+    fprintf(out, "    in a dense bed, %.3g MB of %.3g MB free: ", (double)memory.total / 1e6, num_free / 1e6);
+    if ((double)memory.total <= num_free) fprintf(out, "fits\n");
+    else
+        fprintf(out, "does not fit; about %lld particles would\n",
+                (long long)scree_num_that_fit(&memory, simulation->particles.num_particles, (int64_t)num_free));
 }

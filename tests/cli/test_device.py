@@ -6,6 +6,7 @@ SCREE_BUILD_DIR holds the program (scree) and the one with the emulated device (
 
 import json
 import os
+import re
 import subprocess
 from pathlib import Path
 
@@ -90,11 +91,20 @@ def test_numbers_of_devices(scene, tmp_path):
 
 
 def test_a_scene_that_does_not_fit_is_refused_with_what_it_needs(scene, tmp_path):
-    text = SCENE.replace("count: 12, seed: 1, velocity", "count: 9000, seed: 1, velocity")
-    scene.write_text(text.replace("max: [0.03, 0.03, 0.1]", "max: [0.03, 0.03, 90]"))
+    def write(num_balls):
+        text = SCENE.replace("count: 12, seed: 1, velocity", f"count: {num_balls}, seed: 1, velocity")
+        scene.write_text(text.replace("max: [0.03, 0.03, 0.1]", "max: [0.03, 0.03, 90]"))
+
+    write(9000)
     done = run(EMULATED, scene, tmp_path / "run", "--device", "cuda", expect=1, MEMORY=20_000_000)
     assert "has 20 MB of free memory, the scene needs about" in done.stderr and "fewer particles" in done.stderr
     assert not (tmp_path / "run" / "checkpoint.h5").exists()
+    # a little fewer than it says do fit, a little more do not
+    num = int(re.search(r"about (\d+) would fit", done.stderr)[1])
+    assert 1000 < num < 9000
+    for share, answer in ((0.98, "free: fits"), (1.02, "does not fit; about")):
+        write(int(share * num) - 12)
+        assert answer in scree(EMULATED, "check", scene, "--device", "cuda", MEMORY=20_000_000).stdout
 
 
 def test_beds_are_measured_on_the_device(tmp_path):

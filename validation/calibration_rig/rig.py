@@ -58,15 +58,14 @@ def rock_scale(program, triangles, seed=ROCK_SEED):
     return sizes[0] / sizes[1]
 
 
-def rig(size_scale, proportions, *, triangles=40, seed=ROCK_SEED, friction=0.39, side_friction=0.35, spring=1, end=None):
+def rig(size_scale, proportions, *, triangles=40, seed=ROCK_SEED, friction=0.39, side_friction=0.35, spring=1):
     """The scene. size_scale: rock_scale() of the rock of this seed, so that the volumes do not depend on its shape."""
-    count, scale, depth, opening, step = (proportions[name] for name in ("count", "scale", "depth", "opening", "step"))
-    end = end or proportions["end"]
+    count, scale, depth, opening, end = (proportions[name] for name in ("count", "scale", "depth", "opening", "end"))
     shapes, walls = walls_and_shapes(scale, depth, opening)
     sizes = {key: value * size_scale for key, value in (("mean", 0.01), ("deviation", 0.005), ("min", 0.005), ("max", 0.01))}
     return {
         "name": f"calibration rig, {triangles} triangles",
-        "time": {"end": end, "step": step, "step_fraction": 1},
+        "time": {"end": end, "step": proportions["step"], "step_fraction": proportions.get("step_fraction", 1)},
         "materials": [
             {"name": "rock", "density": 2700, "youngs_modulus": 2e7, "poisson_ratio": 0.25, "shear_modulus": 2e7},
             {"name": "plate", "density": 7850, "youngs_modulus": 1e8, "poisson_ratio": 0.25, "shear_modulus": 2e7},

@@ -30,7 +30,7 @@ if QUICK:
 BAND = (33, 42)  # of the experiments of the source [degrees]
 COLUMNS = (("angle", "angle of repose [degrees]", 1), ("flow", "flow energy [mJ]", 1e3))
 FLOW = 0.6  # time after the opening of the doors over which the flow energy is taken [s]
-LONG = PROPORTIONS["end"] + 0.5  # end of the runs that are shown over time [s]
+LONG = PROPORTIONS["end"] + 0.5  # end of the runs that are shown over time, and of those that rest late [s]
 CREEP = 0.35  # time before it over which their creep is measured [s]
 
 
@@ -40,8 +40,9 @@ def cases():
     all_cases |= {name: (changes | {"end": LONG}, SPRING_SEEDS) for name, changes in (("no_spring", {"spring": 0}), ("spring", {}))}
     all_cases |= {f"friction_{mu:g}": ({"friction": mu}, FEW_SEEDS) for mu in FRICTION}
     all_cases["smooth_sides"] = ({"side_friction": 0}, FEW_SEEDS)
-    all_cases["narrow"] = ({"depth": 0.6 * PROPORTIONS["depth"]}, FEW_SEEDS)
-    all_cases["more_rocks"] = ({"count": round(1.6 * PROPORTIONS["count"])}, FEW_SEEDS)
+    all_cases["narrow"] = ({"depth": 0.6 * PROPORTIONS["depth"], "end": LONG}, FEW_SEEDS)
+    all_cases["more_rocks"] = ({"count": round(1.6 * PROPORTIONS["count"]), "end": LONG}, FEW_SEEDS)
+    all_cases["half_step"] = ({"step_fraction": 0.5}, FEW_SEEDS)
     return all_cases
 
 
@@ -61,9 +62,9 @@ def compute():
 def scene(name, seed):
     """The seed is that of the rock as well as of sizes, places and orientations."""
     changes, _ = cases()[name]
-    proportions = PROPORTIONS | {key: value for key, value in changes.items() if key in ("depth", "count")}
-    changes = {key: value for key, value in changes.items() if key not in ("depth", "count")}
-    made = rig(rock_scale(PROGRAM, changes.get("triangles", 40), seed), proportions, seed=seed, **changes)
+    of_rig = {key: value for key, value in changes.items() if key in (*PROPORTIONS, "step_fraction")}
+    changes = {key: value for key, value in changes.items() if key not in of_rig}
+    made = rig(rock_scale(PROGRAM, changes.get("triangles", 40), seed), PROPORTIONS | of_rig, seed=seed, **changes)
     made["particles"][0]["seed"] = seed
     return made
 
@@ -208,16 +209,22 @@ def shown(values, digits):
     return text
 
 
-def differences_table(results):
-    """From the finest rocks, seed by seed: the same rock, sizes, places and orientations."""
-    finest = {row["seed"]: row for row in rows_of(results, f"triangles_{TRIANGLES[-1]}")}
+def paired(results, name, reference):
+    """Differences of a case from another with the same seeds: the same rock, sizes, places and orientations, where the case has not
+    changed them. Angle [degrees], mean height and flow energy [%]."""
+    others = {row["seed"]: row for row in rows_of(results, reference)}
+    pairs = [(row, others[row["seed"]]) for row in rows_of(results, name) if row["seed"] in others]
+    angle = np.array([row["angle"] - other["angle"] for row, other in pairs])
+    return [angle, *(np.array([100 * (row[key] / other[key] - 1) for row, other in pairs]) for key in ("height", "flow"))]
+
+
+def differences_table(results, cases_and_texts, reference):
     lines = []
-    for n in TRIANGLES[:-1]:
-        pairs = [(row, finest[row["seed"]]) for row in rows_of(results, f"triangles_{n}") if row["seed"] in finest]
-        angle = np.array([row["angle"] - fine["angle"] for row, fine in pairs])
-        height, flow = (np.array([100 * (row[key] / fine[key] - 1) for row, fine in pairs]) for key in ("height", "flow"))
-        lines.append([n, len(pairs), *(shown(values, 1) for values in (angle, height, flow))])
-    return table(["triangles", "seeds", "angle [degrees]", "mean height [%]", "flow energy [%]"], lines)
+    for name, text in cases_and_texts:
+        differences = paired(results, name, reference)
+        if len(differences[0]):
+            lines.append([text, len(differences[0]), *(shown(values, 1) for values in differences)])
+    return table(["", "seeds", "angle [degrees]", "mean height [%]", "flow energy [%]"], lines)
 
 
 def numbers(results):
@@ -253,9 +260,14 @@ def make_page(results):
     plot_spring(results)
     timed = [row["seconds"] for row in results["rows"] if row["seconds"] is not None]
     seconds = sum(seeds * mean_seconds(results, name, timed) for name, (_, seeds) in cases().items())
-    texts = {"table": numbers(results), "creep": creep_table(results), "differences": differences_table(results),
+    finest, usual = f"triangles_{TRIANGLES[-1]}", "triangles_40"
+    triangles = [(f"triangles_{n}", f"{n} triangles") for n in TRIANGLES[:-1]]
+    changed = [(name, name.replace("_", " ")) for name in cases() if name.split("_")[0] not in ("triangles", "no", "spring")]
+    texts = {"table": numbers(results), "creep": creep_table(results),
+             "differences": differences_table(results, triangles, finest), "changes": differences_table(results, changed, usual),
              "minutes": f"{seconds / 60:.0f}", "half": f"{seconds / 120:.0f}",
              "runs": str(len(results["rows"])), "planned": str(results["planned"]), "timed": str(len(timed)),
+             "long": f"{LONG:g}", "reach": f"{200 * PROPORTIONS['scale']:.0f}", "top": f"{75 * PROPORTIONS['scale']:.1f}",
              "mass": f"{1e3 * results['rows'][0]['mass']:.0f}",
              "measured": f"{min(row['measured_step'] for row in results['rows']):.1e}"}
     return texts | {key: str(value) for key, value in results["proportions"].items()}

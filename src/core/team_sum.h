@@ -16,8 +16,9 @@
 #define SCREE_SUM_LANES_OF_THREAD SCREE_SUM_LANES
 #endif
 
-/// Before a loop with long turns: unrolled for a GPU it would need twice the registers.
-#if defined(__CUDACC__) && !defined(CUDA_ON_CPU_CUDA_RUNTIME_H)
+/// Before a loop with long turns: unrolled for a GPU it would need twice the registers. The compiler of the host does
+/// not know it.
+#if defined(__CUDA_ARCH__) && !defined(CUDA_ON_CPU_CUDA_RUNTIME_H)
 #define SCREE_TURN_BY_TURN _Pragma("unroll 1")
 #else
 #define SCREE_TURN_BY_TURN

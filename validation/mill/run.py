@@ -44,7 +44,7 @@ class Case:
 
 
 SPHERES = [Case("smooth", SPHERE, friction, (1, 2)) for friction in (0.154, 0.3, 0.45, 0.7, 0.9)]
-BODIES = [Case("smooth", ROUND, 0.154, (1,)), Case("smooth", CUBE, 0.154, (1,))]
+BODIES = [Case("smooth", ROUND, 0.154, (1, 2)), Case("smooth", CUBE, 0.154, (1, 2))]
 CASES = SPHERES + BODIES
 SHOWN = [SPHERES[0], SPHERES[2], SPHERES[3], *BODIES]  # in pictures with a panel each
 COLOURS = ("C0", "C3", "C4", "C1", "C2")

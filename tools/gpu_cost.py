@@ -35,7 +35,7 @@ KERNELS = [
     ("scree_mesh_apart", "pair", "src/contact/mesh_pairs_kernel.h",
      dict(own="batch:int32 active:int32 first_of_pair:int64 pairs:pair memory:memory", near="travel:real", far="travel:real"), 30),
     ("scree_overlap_pairs", "contact", "src/contact/overlap_pairs_kernel.h",
-     dict(own="active:int32 pairs:pair", near="pose:pose shape:int32", far="pose:pose shape:int32"),
+     dict(own="active:int32 pairs:pair memory:memory*2", near="pose:pose shape:int32", far="pose:pose shape:int32"),
      13925),
     # only looks: at rest no gap is used up
     ("scree_mesh_gap", "pair", "src/contact/mesh_pairs_kernel.h", dict(own="memory:memory"), 6),

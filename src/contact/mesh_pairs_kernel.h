@@ -116,6 +116,13 @@ SCREE_FN void scree_keep_overlap(const scree_mesh_pairs_args *a, int64_t k, cons
     a->kept_levers[k].torque_vector = result->torque_vector;
 }
 
+/// Direction out of i into j along which a pair that touched overlapped little, or zero.
+SCREE_FN scree_vec3 scree_known_direction(const scree_mesh_pairs_args *a, int32_t m)
+{
+    const bool is_known = a->use.remembers && a->memory[m].apart_until < 0;
+    return is_known ? scree_unpack_direction(a->memory[m].direction) : scree_vec3_zero();
+}
+
 /// Notes the `num` results of entry m, and keeps those that touch as far as there is room.
 SCREE_FN void scree_mesh_pair_note(const scree_mesh_pairs_args *a, int32_t m, const scree_overlap_result *results,
                                    int32_t num)
@@ -130,6 +137,7 @@ SCREE_FN void scree_mesh_pair_note(const scree_mesh_pairs_args *a, int32_t m, co
         scree_atomic_max(&a->tally->worst_residual, results[r].residual);
     }
     a->memory[m].apart_until = results[0].status != SCREE_OVERLAP_NONE ? SCREE_PAIR_TOUCHED : 0;
+    if (results[0].status == SCREE_OVERLAP_TOUCHING) scree_pack_direction(results[0].normal, a->memory[m].direction);
     a->list.first_of_pair[a->batch[m]] = num_contacts;
     if (num_contacts == 0) return;
     int64_t k = scree_atomic_count(&a->tally->num_kept, num_contacts);

@@ -126,5 +126,6 @@ int32_t scree_overlap_compute(const scree_shape_view *a, const scree_pose *pose_
     pair.shape[1] = b;
     pair.pose[0] = pose_a;
     pair.pose[1] = pose_b;
+    workspace->slice.setup.known = scree_vec3_zero();
     return scree_overlap_pair_compute(&pair, options, &workspace->slice, results, max_results);
 }

@@ -82,12 +82,31 @@ SCREE_FN_APART void scree_overlap_set_up_frame(scree_overlap_setup *setup, scree
     }
 }
 
+/// Fewer triangles than this of both bodies together are kept anyway.
+#define SCREE_TURN_FROM 24
+
+/// Half-spaces along the direction that is known, if it is within 70 degrees of z. What a half-space drops counts zero,
+/// and so few triangles are gone through in their order whichever are kept, so no result depends on it. Shapes with a
+/// tree may keep more than SCREE_INDEX_MAX, and have a direction that was searched for.
+SCREE_FN_APART void scree_overlap_turn_half_spaces(scree_overlap_setup *setup, const scree_pose *pose_a)
+{
+    const scree_shape_view *a = setup->posed[0].shape, *b = setup->posed[1].shape;
+    if (scree_filter_uses_tree(a) || scree_filter_uses_tree(b) || a->num_triangles + b->num_triangles < SCREE_TURN_FROM)
+        return;
+    const scree_mat3 rotation = scree_mat3_from_quat(pose_a->orientation);
+    const scree_vec3 own = scree_mat3_apply_transposed(rotation, setup->known);
+    const scree_vec3 turned = scree_frame_turn(&setup->frame, own);
+    if (turned.z > 0 && turned.z * turned.z > (scree_real)0.12 * scree_vec3_dot(turned, turned))
+        setup->direction = turned;
+}
+
 /// Frame and boxes. False if the boxes are apart.
 SCREE_FN bool scree_overlap_set_up(const scree_overlap_pair *pair, scree_overlap_setup *setup)
 {
     if (!scree_overlap_set_up_boxes(*pair, setup)) return false;
     const scree_vec3 direction = scree_overlap_direction(pair->shape[0], pair->shape[1], &setup->pose);
     scree_overlap_set_up_frame(setup, direction);
+    scree_overlap_turn_half_spaces(setup, pair->pose[0]);
     return true;
 }
 

@@ -36,6 +36,7 @@ SCREE_FN void scree_overlap_of_pair(const scree_overlap_pairs_args *a, const scr
         pair.pose[side] = meshes->bodies.pose + body[side];
     }
     scree_overlap_slice *slice = a->slices + i;
+    if (scree_team_leads(team)) slice->setup.known = scree_known_direction(meshes, active[k]);
     scree_overlap_result *results = a->results + (int64_t)i * a->max_results;
     scree_overlap_options options = a->options;
     options.separate_patches = options.separate_patches && may_separate;

@@ -155,6 +155,7 @@ typedef struct scree_overlap_setup
     scree_overlap_frame frame;
     scree_posed_shape posed[2];
     scree_vec3 direction;  ///< out of A into B, along the working axes, any length
+    scree_vec3 known;      ///< world, out of A into B, by the caller: along it they overlap little; zero: not known
     scree_box box[2];      ///< of the whole bodies; A's exact, B's from outside
     scree_real extents[2]; ///< largest side of each body's own box, in units of A
 } scree_overlap_setup;

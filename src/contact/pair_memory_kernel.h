@@ -12,7 +12,8 @@
 /// direction that is only tried first, single precision for a bound that is rounded down.
 typedef struct scree_pair_memory
 {
-    uint16_t direction[2]; ///< that separated it last time, see scree_pack_direction(); zeros: none
+    uint16_t direction[2]; ///< out of i into j that separated it last time, or the normal of its contact, see
+                           ///< scree_pack_direction(); zeros: none
     float apart_until;     ///< [m] sum of the travels of both bodies up to which it cannot touch; < 0: it touched
 } scree_pair_memory;
 

@@ -1,7 +1,7 @@
 /// \file triangle_filter_kernel.h
 /// Triangles of two bodies that can take part in their overlap. A lies below B along z of the working frame.
 ///
-/// Each body has a half-space that the other cannot leave: how far the other reaches along a direction at most 55
+/// Each body has a half-space that the other cannot leave: how far the other reaches along a direction at most 70
 /// degrees from z. A triangle counts with the part of it within the half-space, by the box of that part. It is kept if
 /// this box meets the region: the box of what was kept of the other body in x and y, and in z one-sided, since a point
 /// of A inside B has, straight below it, a triangle of B, and along that ray the half-space is only entered deeper.

@@ -1,5 +1,5 @@
 // Overlap of random pairs of generated shapes at random poses and scales: what holds for any two bodies.
-#include "contact/overlap.h"
+#include "contact/overlap_kernel.h"
 #include "mesh_tools.h"
 #include "polyhedra/generate.h"
 
@@ -105,6 +105,42 @@ static void print_body(const char *name, const body *b, const scree_shape *shape
            (double)p->scale);
 }
 
+static scree_overlap_result overlap_along(const body *a, const body *b, scree_vec3 direction,
+                                          scree_overlap_workspace *workspace)
+{
+    const scree_overlap_options options = {0};
+    const scree_overlap_pair pair = {{&a->shape->view, &b->shape->view}, {&a->pose, &b->pose}};
+    // a workspace begins with its buffers
+    scree_overlap_slice *slice = (scree_overlap_slice *)workspace;
+    slice->setup.known = direction;
+    scree_overlap_result result = {0};
+    for (;;)
+    {
+        scree_overlap_pair_compute(&pair, &options, slice, &result, 1);
+        if (result.status != SCREE_OVERLAP_WORKSPACE_FULL || scree_overlap_workspace_grow(workspace) != SCREE_OK)
+            return result;
+    }
+}
+
+static bool are_same(scree_vec3 a, scree_vec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+
+/// Whatever direction is said to be known, the result has the same bits.
+static void check_directions(const body *a, const body *b, uint64_t *state, scree_overlap_workspace *workspace)
+{
+    const scree_overlap_result without = overlap_along(a, b, scree_vec3_zero(), workspace);
+    for (int k = 0; k < 4; ++k)
+    {
+        const scree_vec3 direction = k == 0 ? without.normal : random_direction(state);
+        const scree_overlap_result with = overlap_along(a, b, direction, workspace);
+        SCREE_CHECK(with.status == without.status && with.used_fallback == without.used_fallback);
+        SCREE_CHECK(with.volume == without.volume && with.indentation == without.indentation);
+        SCREE_CHECK(with.radius == without.radius && with.residual == without.residual);
+        SCREE_CHECK(are_same(with.normal, without.normal) && are_same(with.arm, without.arm));
+        SCREE_CHECK(are_same(with.area_vector, without.area_vector));
+        SCREE_CHECK(are_same(with.torque_vector, without.torque_vector));
+    }
+}
+
 /// All that must hold of one pair. Returns its volume over that of the smaller body.
 static double check_pair(const body *a, const body *b, uint64_t *state, scree_overlap_workspace *workspace)
 {
@@ -115,6 +151,7 @@ static double check_pair(const body *a, const body *b, uint64_t *state, scree_ov
     SCREE_CHECK_CLOSE(overlap(b, a, SCREE_OVERLAP_FILTERED, workspace), volume, allowed);
     SCREE_CHECK_CLOSE(overlap(a, b, SCREE_OVERLAP_HIERARCHY, workspace), volume, allowed);
     SCREE_CHECK_CLOSE(overlap(b, a, SCREE_OVERLAP_HIERARCHY, workspace), volume, allowed);
+    check_directions(a, b, state, workspace);
 
     const scree_quat turn = scree_test_random_rotation(state);
     const scree_vec3 shift = scree_vec3_scale(random_direction(state), (scree_real)(4 * extent_of(a)));

@@ -25,6 +25,7 @@ FALL = ["particles.fall.region.min=[-0.471,-0.471,0.005]", "particles.fall.spaci
         f"particles.fall.count={64 if QUICK else 96}", "time.step=2e-5"]
 FALL_STEPS = 5000 if QUICK else 20000
 SKINS = ["0.02", "0.1", "0.3", "auto"]
+TURNS = 1 if QUICK else 3  # of the runs with different skins, and of the rig
 
 
 def bench(name, *options, program=PROGRAM):
@@ -37,6 +38,16 @@ def scene(*overrides, program=PROGRAM, parts=30):
     for override in [*FALL, *overrides]:
         options += ["--set", override]
     return bench("scene", *options, program=program)
+
+
+def skin_turns():
+    """Runs by skin, all skins in each turn."""
+    turns = [{skin: scene(f"solver.skin={skin}", parts=1)["cases"][0] for skin in SKINS} for _ in range(TURNS)]
+    return {skin: [turn[skin] for turn in turns] for skin in SKINS}
+
+
+def rig_turns():
+    return [bench("rig", "--steps", 2500 if QUICK else 14000, "--particles", 50)["cases"] for _ in range(TURNS)]
 
 
 def compute():
@@ -52,8 +63,8 @@ def compute():
     pairs = kept("precision", lambda: [(bench("packing", "--shape", shape, *bed), bench("packing", "--shape", shape, *bed, **single))
                                        for shape in ("cube", "schoenhardt", "sphere")])
     results["precision"] = [[double["cases"][0], float_["cases"][0]] for double, float_ in pairs]
-    results["skin"] = kept("skin", lambda: {skin: scene(f"solver.skin={skin}", parts=1)["cases"][0] for skin in SKINS})
-    results["rig"] = kept("rig", lambda: bench("rig", "--steps", 2500 if QUICK else 14000, "--particles", 50))
+    results["skin"] = kept("skin", skin_turns)
+    results["rig"] = kept("rig", rig_turns)
     largest = 10000 if QUICK else 1000000
     results["scaling"] = kept("scaling", lambda: bench("scaling", "--particles", largest, "--repetitions", 3, "--steps", 4,
                                                        "--search-every", 4, "--threads", 2))
@@ -90,23 +101,47 @@ def plot_fall(results):
     save(figure, "fall.png", results)
 
 
-def exponent(cases, value):
-    if not all(value(c) > 0 for c in cases):
+def exponent(cases, key):
+    if not all(case[key] > 0 for case in cases):
         return float("nan")  # a run so short that nothing touches
     x = np.log([c["triangles"] for c in cases])
-    return np.polyfit(x, np.log([value(c) for c in cases]), 1)[0]
+    return np.polyfit(x, np.log([case[key] for case in cases]), 1)[0]
+
+
+def middle_and_spread(values):
+    """Median, and largest minus smallest over it."""
+    middle = float(np.median(values))
+    return middle, f"{100 * (max(values) - min(values)) / middle:.0f} %" if len(values) > 1 else "one run"
+
+
+def rig_cases(results):
+    """Medians over the turns, by number of triangles."""
+    cases = []
+    for turns in zip(*results["rig"], strict=True):
+        whole, spread = middle_and_spread([c["core_seconds"] for c in turns])
+        cases.append({"triangles": turns[0]["triangles"], "particles": turns[0]["particles"], "steps": turns[0]["steps"],
+                      "contacts": turns[0]["mean_contacts"], "whole": whole, "spread": spread,
+                      "in_contacts": float(np.median([c["stages"]["contacts"]["core_seconds"] for c in turns])),
+                      "pair": float(np.median([c["core_us_per_contact_step"] for c in turns]))})
+    return cases
+
+
+def rig_table(cases):
+    rows = [[c["triangles"], f"{c['contacts']:.1f}", f"{c['whole']:.2f}", c["spread"], f"{c['in_contacts'] / c['whole']:.2f}",
+             f"{c['pair']:.2f}"] for c in cases]
+    return table(["triangles", "touching pairs, mean", "processor time [s]", "spread", "share of the contacts", "µs for a touching pair and step"], rows)
 
 
 def plot_rig(results):
-    cases = results["rig"]["cases"]
+    cases = rig_cases(results)
     triangles = np.array([c["triangles"] for c in cases], float)
-    whole = np.array([c["core_seconds"] for c in cases])
+    whole = np.array([c["whole"] for c in cases])
     figure, axes = plt.subplots(1, 2, figsize=(11, 4.2), layout="constrained")
     axes[0].loglog(triangles, whole, "o-", label="whole run")
-    axes[0].loglog(triangles, [c["stages"]["contacts"]["core_seconds"] for c in cases], "s-", label="contacts")
+    axes[0].loglog(triangles, [c["in_contacts"] for c in cases], "s-", label="contacts")
     axes[0].loglog(triangles, whole[0] * np.sqrt(triangles / triangles[0]), "k:", lw=0.8, label="square root")
     axes[0].loglog(triangles, whole[0] * triangles / triangles[0], "k--", lw=0.8, label="linear, as the thesis")
-    axes[1].loglog(triangles, [c["core_us_per_contact_step"] for c in cases], "o-")
+    axes[1].loglog(triangles, [c["pair"] for c in cases], "o-")
     axes[0].set(xlabel="triangles of a rock", ylabel="processor time [s]")
     axes[1].set(xlabel="triangles of a rock", ylabel="time for a touching pair and step [µs]")
     axes[0].legend(fontsize=8)
@@ -157,11 +192,12 @@ def savings_table(results):
 
 
 def skin_table(results):
-    best = min(c["core_seconds"] for c in results["skin"].values())
-    rows = [[skin, c["searches"], f"{c['pairs']}", f"{c['core_seconds'] / best:.2f}",
-             f"{100 * c['stages']['search']['core_seconds'] / c['core_seconds']:.0f} %"]
-            for skin, c in results["skin"].items()]
-    return table(["skin", "searches", "candidates at the end", "time over the least", "share of searches"], rows)
+    times = {skin: middle_and_spread([c["core_seconds"] for c in turns]) for skin, turns in results["skin"].items()}
+    best = min(middle for middle, _ in times.values())
+    rows = [[skin, turns[0]["searches"], f"{turns[0]['pairs']}", f"{times[skin][0] / best:.2f}", times[skin][1],
+             f"{100 * np.median([c['stages']['search']['core_seconds'] / c['core_seconds'] for c in turns]):.1f} %"]
+            for skin, turns in results["skin"].items()]
+    return table(["skin", "searches", "candidates at the end", "time over the least", "spread", "share of searches"], rows)
 
 
 def precision_table(results):
@@ -189,18 +225,20 @@ def memory_table(results):
 def threads_text(results):
     cases = results["scaling"]["cases"]
     alone = [c for c in cases if c["threads"] == 1]
-    ratios = [f"{a['wall_seconds'] / b['wall_seconds']:.2f} ({a['particles']} particles)"
-              for a, b in zip(cases[::2], cases[1::2], strict=True)]
+    rows = [[a["particles"], *(cell for c in (a, b) for cell in (f"{1e6 * c['wall_seconds'] / c['contacts']:.2f}", f"{100 * c['spread']:.0f} %")),
+             f"{a['wall_seconds'] / b['wall_seconds']:.2f}", f"{b['core_us_per_contact'] / a['core_us_per_contact']:.2f}"]
+            for a, b in zip(cases[::2], cases[1::2], strict=True)]
+    text = table(["particles", "one thread, elapsed µs for a touching pair", "spread", "two threads", "spread", "times as fast",
+                  "processor time of two over one"], rows)
     per = [c["core_us_per_contact"] for c in alone]
-    sizes = f"On one thread the time for a touching pair differs by a factor of {max(per) / min(per):.2f} between the sizes."
-    return (f"Two threads are {', '.join(ratios)} times as fast as one. " + sizes * (len(alone) > 1))
+    return text + (f"\n\nOn one thread the time for a touching pair differs by a factor of {max(per) / min(per):.2f} between the sizes." * (len(alone) > 1))
 
 
 def make_page(results):
     for plot in (plot_fall, plot_rig, plot_memory, plot_threads):
         plot(results)
     machine = results["machine"]
-    rig = results["rig"]["cases"]
+    rig = rig_cases(results)
     return {
         "machine": f"{machine['processor']} (virtual, {machine['processors']} processors, other work beside it), "
                    f"{machine['compiler']}" + (", QUICK=1: small beds, short runs" if results["quick"] else "") + results.get("remark", ""),
@@ -210,8 +248,12 @@ def make_page(results):
         "precision": precision_table(results),
         "memory": memory_table(results),
         "threads": threads_text(results),
-        "rig_whole": f"{exponent(rig, lambda c: c['core_seconds']):.2f}",
-        "rig_pair": f"{exponent(rig, lambda c: c['core_us_per_contact_step']):.2f}",
+        "rig_whole": f"{exponent(rig, 'whole'):.2f}",
+        "rig_pair": f"{exponent(rig, 'pair'):.2f}",
+        "bed_particles": str(results["packing"]["cases"][0]["particles"]), "bed_steps": str(results["packing"]["cases"][0]["steps"]),
+        "bed_repetitions": str(results["packing"]["cases"][0]["repetitions"]),
+        "fall_particles": str(results["fall"]["cases"][0]["particles"]), "fall_steps": str(FALL_STEPS),
+        "rig": rig_table(rig), "turns": str(len(results["rig"])),
         "rig_particles": str(rig[0]["particles"]),
         "rig_steps": str(rig[0]["steps"]),
     }

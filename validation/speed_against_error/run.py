@@ -144,7 +144,7 @@ def summarise(results):
     return results
 
 
-STYLES = {"time step": "C0o-", "single precision": "C3^", "triangles": "C2s-", "skin": "C4D", "overlap scheme": "C1P"}
+STYLES = {"time step": "C0o", "single precision": "C3^", "triangles": "C2s", "skin": "C4D", "overlap scheme": "C1P"}
 """Colour and marker of what is changed."""
 MEASURES = {  # panel: (scene, column, is a mean over starts, label)
     "collisions": ("collisions", "error", False, "velocity after the impact, over 2 m/s"),
@@ -156,60 +156,58 @@ MEASURES = {  # panel: (scene, column, is a mean over starts, label)
 
 
 def points(results, panel):
-    """Per setting in order: error, its uncertainty, time over that of the base, and whether all bits are those of the base."""
+    """Per setting in order: error and its standard error over the starts, time over that of the default as median and range,
+    and whether all bits are those of the default."""
     scene, column, is_mean, _ = MEASURES[panel]
     runs = results[scene]["runs"]
     rows, names = [], list(dict.fromkeys((run["axis"], run["value"]) for run in runs))
-    chosen = {name: [run for run in runs if (run["axis"], run["value"]) == name] for name in names}
-    for name in names:
-        values = np.array([run[column] for run in chosen[name]])
-        error, uncertainty = float(values.mean()), 0.0
+    by_name = {name: {run["seed"]: run for run in runs if (run["axis"], run["value"]) == name} for name in names}
+    for name, chosen in by_name.items():
+        errors = [run[column] for run in chosen.values()]
         if is_mean:
-            finest = next(n for n in names if n[0] == "time step") if name[0] != "triangles" else names_of(names, "triangles")[-1]
-            error, uncertainty = difference(values, np.array([run[column] for run in chosen[finest]]))
-        as_base = all(run["as_base"] for run in chosen[name])
+            finest = by_name[names_of(names, "triangles")[-1] if name[0] == "triangles" else names_of(names, "time step")[0]]
+            errors = [run[column] / finest[seed][column] - 1 for seed, run in chosen.items()]
+        error, uncertainty = float(np.mean(errors)), standard_error(errors)
+        as_base = all(run["as_base"] for run in chosen.values())
         if as_base and is_mean and name[0] == "skin":  # which may have run for fewer starts
             error, uncertainty = next((row["error"], row["uncertainty"]) for row in rows if (row["axis"], row["value"]) == BASE)
-        rows.append({"axis": name[0], "value": name[1], "error": error, "uncertainty": uncertainty, "runs": len(values),
-                     "time": float(np.median([run["ratio"] for run in chosen[name]])),
-                     "as_base": as_base})
+        times = [run["ratio"] for run in chosen.values()]
+        rows.append({"axis": name[0], "value": name[1], "error": error, "uncertainty": uncertainty, "runs": len(errors),
+                     "time": float(np.median(times)), "times": (min(times), max(times)), "as_base": as_base})
     return rows
+
+
+def standard_error(values):
+    """Of their mean; unknown (nan) from one."""
+    return float(np.std(values, ddof=1) / math.sqrt(len(values))) if len(values) > 1 else math.nan
 
 
 def names_of(names, axis):
     return [name for name in names if name[0] == axis]
 
 
-def difference(values, finest):
-    """Relative difference of two means and its standard error; unknown (nan) from one start."""
-    if len(values) < 2:
-        return float(values.mean() / finest.mean() - 1), math.nan
-    spread = math.hypot(values.std(ddof=1) / math.sqrt(len(values)), finest.std(ddof=1) / math.sqrt(len(finest)))
-    return float(values.mean() / finest.mean() - 1), float(spread / finest.mean())
-
-
 def noise(results, panel):
-    """Standard error of a difference of two means over starts, from the scatter over all settings of the same shape."""
-    scene, column, _, _ = MEASURES[panel]
-    runs = [run for run in results[scene]["runs"] if run["axis"] == "time step"]
-    variances = []
-    for value in {run["value"] for run in runs}:
-        values = np.array([run[column] for run in runs if run["value"] == value])
-        if len(values) > 1:
-            variances.append(values.var(ddof=1) / len(values))
-    return math.sqrt(2 * np.mean(variances)) / np.mean([run[column] for run in runs]) if variances else math.nan
+    """Standard error of the mean over starts of a relative difference from the finest step, the same for all steps."""
+    rows = [row for row in points(results, panel) if row["axis"] == "time step" and row["error"] != 0]
+    return math.sqrt(np.mean([row["uncertainty"] ** 2 for row in rows]))
 
 
 def draw(ax, results, panel):
-    """Distances on a logarithmic axis; differences of means, which may be noise, with their sign and uncertainty."""
+    """Distances on a logarithmic axis, those of the finest runs, zero, hollow at its left edge; differences of means, which may
+    be noise, with their sign."""
     is_mean = MEASURES[panel][2]
     rows = points(results, panel)
+    edge = min(row["error"] for row in rows if row["error"] > 0) / 3
     for axis, style in STYLES.items():
-        chosen = [row for row in rows if row["axis"] == axis and (is_mean or row["error"] > 0)]
-        ax.errorbar([row["error"] for row in chosen], [row["time"] for row in chosen],
-                    xerr=np.nan_to_num([row["uncertainty"] for row in chosen]), fmt=style[:3] if is_mean else style, ms=5, lw=1,
+        chosen = [row for row in rows if row["axis"] == axis]
+        finest = [] if is_mean else [row | {"error": edge, "value": f"{row['value']} (finest, 0)"} for row in chosen if row["error"] == 0]
+        shown = [row for row in chosen if is_mean or row["error"] > 0]
+        is_line = not is_mean and axis in ("time step", "triangles")
+        ax.errorbar([row["error"] for row in shown], [row["time"] for row in shown],
+                    xerr=np.nan_to_num([row["uncertainty"] for row in shown]), fmt=style + "-" * is_line, ms=5, lw=1,
                     elinewidth=0.8, label=axis)
-        for row in chosen:
+        ax.plot([row["error"] for row in finest], [row["time"] for row in finest], style, ms=6, mfc="none")
+        for row in shown + finest:
             ax.annotate(row["value"], (row["error"], row["time"]), xytext=(-5, -3) if axis == "skin" else (5, 3),
                         ha="right" if axis == "skin" else "left", textcoords="offset points", fontsize=7)
     if is_mean and not math.isnan(noise(results, panel)):
@@ -233,22 +231,23 @@ def plot(results, name, panels):
 def errors_table(results, panels):
     """One row per setting; of several panels of a scene, the errors beside each other."""
     columns = [points(results, panel) for panel in panels]
-    head = ["setting", "value", *(f"error of {MEASURES[panel][3]}" for panel in panels), "time", "bits of the default"]
-    return table(head, [[rows[0]["axis"], rows[0]["value"], *(number(row) for row in rows), f"{rows[0]['time']:.2f}",
+    head = ["setting", "value", *(f"error of {MEASURES[panel][3]}" for panel in panels), "time", "of the starts", "bits of the default"]
+    return table(head, [[rows[0]["axis"], rows[0]["value"],
+                         *(number(row, MEASURES[panel][2]) for row, panel in zip(rows, panels, strict=True)),
+                         f"{rows[0]['time']:.2f}", "{:.2f} to {:.2f}".format(*rows[0]["times"]) if rows[0]["runs"] > 1 else "",
                          "yes" if rows[0]["as_base"] else ""] for rows in zip(*columns, strict=True)])
 
 
-def number(row):
+def number(row, is_mean):
     if row["error"] == 0:
         return "0 (finest)"
-    if row["uncertainty"] == 0:
-        return f"{row['error']:.1e}"
-    is_known = not math.isnan(row["uncertainty"])
-    return f"{row['error']:+.3f} " + (f"± {row['uncertainty']:.3f}" if is_known else "(one start)")
+    digits = 3 if is_mean else max(0, 1 - math.floor(math.log10(row["error"])))
+    value = f"{row['error']:{'+' if is_mean else ''}.{digits}f}"
+    return value + (" (one start)" if math.isnan(row["uncertainty"]) else f" ± {row['uncertainty']:.{digits}f}")
 
 
 def percent(value):
-    return "unknown from one start" if math.isnan(value) else f"{100 * value:.1f} %"
+    return "unknown from one start" if math.isnan(value) else f"{100 * value:.0f} %"
 
 
 def make_page(results):
@@ -259,7 +258,7 @@ def make_page(results):
                   if (run["axis"], run["value"]) != ("triangles", "40"))
     texts = {"collisions": errors_table(results, ["collisions"]), "packing": errors_table(results, ["packing_early", "packing", "packing_contacts"]),
              "flow": errors_table(results, ["flow"]), "minutes": f"{seconds / 60:.0f}",
-             "early": f"{EARLY:g}"} | {
+             "early": f"{EARLY:g}", "remark": results.get("remark", "")} | {
         f"noise_{panel}": percent(noise(results, panel)) for panel in ("packing", "packing_contacts", "flow")}
     texts |= {f"seeds_{scene}": str(max(run["seed"] for run in results[scene]["runs"])) for scene in MAKERS}
     texts |= {f"step_{scene}": f"{results[scene]['critical']:.2e}" for scene in MAKERS}

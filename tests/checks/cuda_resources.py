@@ -20,7 +20,6 @@ LIMITS = {"80": (64, 32), "90": (64, 32), "120": (48, 24)}
 
 # kernels that may have a frame or spills, and why
 REASONS = {
-    "scree_mesh_gap": "two triangles and the relative pose take all registers; a pair comes here when its last gap is used up",
     "scree_particle_pairs": "32 keys wait in a batch, so that one atomic serves them all; runs at neighbour searches only",
     "scree_wall_pairs": "as scree_particle_pairs",
     "scree_overlap_pairs": "a whole overlap by a team of lanes, with all registers there are: one of them waits while two triangles are "

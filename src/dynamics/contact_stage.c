@@ -6,15 +6,13 @@
 #include <math.h>
 #include <string.h>
 
-static int64_t count_blocks(int64_t num, int64_t size) { return (num + size - 1) / size; }
-
 scree_status scree_reserve_contact_sums(scree_simulation *simulation)
 {
     const scree_simulation *s = simulation;
     scree_step_buffers *b = s->buffers;
     const int64_t num = s->contacts.num_contacts, num_old = s->old_contacts.num_contacts;
-    b->num_ended_blocks = count_blocks(num_old, SCREE_WORK_BLOCK);
-    const int64_t num_blocks = b->num_ended_blocks + count_blocks(num, SCREE_WORK_BLOCK);
+    b->num_ended_blocks = scree_count_blocks(num_old, SCREE_WORK_BLOCK);
+    const int64_t num_blocks = b->num_ended_blocks + scree_count_blocks(num, SCREE_WORK_BLOCK);
     // sums of sums, down to one, take less than a 255th of them
     const int64_t num_sums = num_blocks + num_blocks / (SCREE_SUM_FAN_IN - 1) + 8;
     scree_status status =
@@ -38,7 +36,7 @@ static void sum_up_contacts(const scree_simulation *s)
                                     s->old_contacts.num_contacts, b->work_sums};
     scree_ended_launch_on(s->device, ended, b->num_ended_blocks);
     const scree_indentations_args indentations = {s->contacts.indentation, num, &b->tally->largest_indentation};
-    scree_indentations_launch_on(s->device, indentations, count_blocks(num, SCREE_WORK_BLOCK));
+    scree_indentations_launch_on(s->device, indentations, scree_count_blocks(num, SCREE_WORK_BLOCK));
 }
 
 scree_bodies scree_step_bodies(const scree_simulation *simulation)
@@ -167,7 +165,7 @@ static void reduce_work(const scree_simulation *s, int64_t num_parts)
     scree_work_reduce_args args = {s->buffers->work_sums, num_parts, NULL, 1};
     for (int64_t num_sums = 0; num_sums != 1;)
     {
-        num_sums = args.num_parts > 1 ? count_blocks(args.num_parts, SCREE_SUM_FAN_IN) : 1;
+        num_sums = args.num_parts > 1 ? scree_count_blocks(args.num_parts, SCREE_SUM_FAN_IN) : 1;
         args.sums = num_sums > 1 ? s->buffers->work_sums + num_parts : &s->buffers->tally->work;
         scree_work_reduce_launch_on(s->device, args, num_sums);
         args.parts = args.sums;
@@ -180,7 +178,7 @@ static void reduce_work(const scree_simulation *s, int64_t num_parts)
 void scree_sum_work(scree_simulation *simulation)
 {
     const scree_step_buffers *b = simulation->buffers;
-    const int64_t num_blocks = count_blocks(simulation->contacts.num_contacts, SCREE_WORK_BLOCK);
+    const int64_t num_blocks = scree_count_blocks(simulation->contacts.num_contacts, SCREE_WORK_BLOCK);
     scree_work_args work;
     work.contacts = scree_contact_list_view(&simulation->contacts);
     work.bodies = scree_step_body_motion(b);

@@ -64,13 +64,11 @@ static double rate_of(const scree_simulation *s, int32_t wall, const scree_wall_
     return (double)scree_vec3_dot(axis->is_rotating ? state->angular_velocity : state->velocity, axis->direction);
 }
 
-static int64_t count_blocks(int64_t num, int64_t size) { return (num + size - 1) / size; }
-
 scree_status scree_reserve_wall_loads(scree_simulation *simulation)
 {
     scree_step_buffers *b = simulation->buffers;
     if (b->num_moving_walls == 0) return SCREE_OK;
-    const int64_t num_parts = count_blocks(simulation->contacts.num_contacts, SCREE_WALL_LOAD_BLOCK);
+    const int64_t num_parts = scree_count_blocks(simulation->contacts.num_contacts, SCREE_WALL_LOAD_BLOCK);
     // sums of sums, down to one, take less than a 255th of them
     const int64_t num_sums = (num_parts + num_parts / (SCREE_SUM_FAN_IN - 1) + 8) * b->num_moving_walls;
     return scree_device_reserve(simulation->device, &b->load_sums, &b->max_load_sums, num_sums, sizeof *b->load_sums);
@@ -82,7 +80,7 @@ void scree_sum_wall_loads(scree_simulation *simulation)
     const scree_step_buffers *b = s->buffers;
     const int64_t num_moving = b->num_moving_walls;
     if (num_moving == 0) return;
-    int64_t num_parts = count_blocks(s->contacts.num_contacts, SCREE_WALL_LOAD_BLOCK);
+    int64_t num_parts = scree_count_blocks(s->contacts.num_contacts, SCREE_WALL_LOAD_BLOCK);
     scree_wall_load_args args;
     args.contacts = scree_contact_list_view(&s->contacts);
     args.pose = b->pose;
@@ -97,7 +95,7 @@ void scree_sum_wall_loads(scree_simulation *simulation)
     scree_wall_load_reduce_args reduce = {b->load_sums, num_parts, num_moving, NULL, 1};
     for (int64_t num_sums = 0; num_sums != 1;)
     {
-        num_sums = reduce.num_parts > 1 ? count_blocks(reduce.num_parts, SCREE_SUM_FAN_IN) : 1;
+        num_sums = reduce.num_parts > 1 ? scree_count_blocks(reduce.num_parts, SCREE_SUM_FAN_IN) : 1;
         reduce.sums = num_sums > 1 ? b->load_sums + num_parts * num_moving : scree_board_loads(b->board);
         scree_wall_load_reduce_launch_on(s->device, reduce, num_sums * num_moving);
         reduce.parts = reduce.sums;

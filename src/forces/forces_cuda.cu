@@ -6,12 +6,10 @@
 #include "forces/wall_load_kernel.h"
 #include "forces/work_kernel.h"
 
-static __device__ int64_t count_blocks(int64_t num, int64_t size) { return (num + size - 1) / size; }
-
 /// Sums of groups, one at least.
 static __device__ int64_t count_sums(int64_t num_parts)
 {
-    const int64_t num_sums = count_blocks(num_parts, SCREE_SUM_FAN_IN);
+    const int64_t num_sums = scree_count_blocks(num_parts, SCREE_SUM_FAN_IN);
     return num_sums > 0 ? num_sums : 1;
 }
 
@@ -26,34 +24,34 @@ static __device__ void scree_contact_force_look_up(scree_contact_force_args *, c
 /// those of the present contacts.
 static __device__ int64_t count_unused(const scree_live *live)
 {
-    return count_blocks(live->max_old_contacts, SCREE_WORK_BLOCK) -
-           count_blocks(live->num_old_contacts, SCREE_WORK_BLOCK);
+    return scree_count_blocks(live->max_old_contacts, SCREE_WORK_BLOCK) -
+           scree_count_blocks(live->num_old_contacts, SCREE_WORK_BLOCK);
 }
 
 static __device__ void scree_ended_look_up(scree_ended_args *a, const scree_live *live, int64_t *num)
 {
     a->num_old = live->num_old_contacts;
     a->sums += count_unused(live);
-    *num = count_blocks(a->num_old, SCREE_WORK_BLOCK);
+    *num = scree_count_blocks(a->num_old, SCREE_WORK_BLOCK);
 }
 
 static __device__ void scree_indentations_look_up(scree_indentations_args *a, const scree_live *live, int64_t *num)
 {
     a->num_contacts = live->num_contacts;
-    *num = count_blocks(a->num_contacts, SCREE_WORK_BLOCK);
+    *num = scree_count_blocks(a->num_contacts, SCREE_WORK_BLOCK);
 }
 
 static __device__ void scree_work_look_up(scree_work_args *a, const scree_live *live, int64_t *num)
 {
     a->contacts.num_contacts = live->num_contacts;
-    *num = count_blocks(live->num_contacts, SCREE_WORK_BLOCK);
+    *num = scree_count_blocks(live->num_contacts, SCREE_WORK_BLOCK);
 }
 
 static __device__ void scree_work_reduce_look_up(scree_work_reduce_args *a, const scree_live *live, int64_t *num)
 {
-    const int64_t num_blocks =
-        count_blocks(live->num_old_contacts, SCREE_WORK_BLOCK) + count_blocks(live->num_contacts, SCREE_WORK_BLOCK);
-    a->num_parts = count_blocks(num_blocks, a->per_part);
+    const int64_t num_blocks = scree_count_blocks(live->num_old_contacts, SCREE_WORK_BLOCK) +
+                               scree_count_blocks(live->num_contacts, SCREE_WORK_BLOCK);
+    a->num_parts = scree_count_blocks(num_blocks, a->per_part);
     if (a->per_part == 1) a->parts += count_unused(live);
     *num = count_sums(a->num_parts);
 }
@@ -61,13 +59,13 @@ static __device__ void scree_work_reduce_look_up(scree_work_reduce_args *a, cons
 static __device__ void scree_wall_load_look_up(scree_wall_load_args *a, const scree_live *live, int64_t *num)
 {
     a->contacts.num_contacts = live->num_contacts;
-    *num = count_blocks(live->num_contacts, SCREE_WALL_LOAD_BLOCK);
+    *num = scree_count_blocks(live->num_contacts, SCREE_WALL_LOAD_BLOCK);
 }
 
 static __device__ void scree_wall_load_reduce_look_up(scree_wall_load_reduce_args *a, const scree_live *live,
                                                       int64_t *num)
 {
-    a->num_parts = count_blocks(count_blocks(live->num_contacts, SCREE_WALL_LOAD_BLOCK), a->per_part);
+    a->num_parts = scree_count_blocks(scree_count_blocks(live->num_contacts, SCREE_WALL_LOAD_BLOCK), a->per_part);
     *num = count_sums(a->num_parts) * a->num_moving;
 }
 

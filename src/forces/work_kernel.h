@@ -12,6 +12,9 @@
 /// Contacts whose sum is made by one index.
 #define SCREE_WORK_BLOCK 256
 
+/// Blocks of so many items that hold `num`.
+SCREE_FN int64_t scree_count_blocks(int64_t num, int64_t size) { return (num + size - 1) / size; }
+
 /// Sums over one block of contacts.
 typedef struct scree_work_sums
 {

@@ -1,9 +1,8 @@
 /// \file skin.c
 /// The cost of a step over the skin s, in nanoseconds of one core. Candidates grow with the volume around a particle,
 /// P(s) = P (R + s)^3 / (R + s0)^3 with the mean bounding radius R, and a search is needed every s/u steps, u being the
-/// way of the fastest bodies in one step. A search costs so much per particle and candidate, each candidate is asked
-/// for a separating direction after it, and every step looks at each candidate. The minimum is flat, so the constants
-/// need not be those of the machine.
+/// way of the fastest bodies in one step. A search costs so much per particle and candidate, and every step looks at each
+/// candidate. The minimum is flat, so the constants need not be those of the machine.
 #include "dynamics/skin.h"
 
 #include "dynamics/step_buffers.h"
@@ -15,7 +14,6 @@ enum
 {
     SEARCH_PER_PARTICLE = 400,
     SEARCH_PER_PAIR = 100,
-    FIRST_LOOK_PER_PAIR = 250, ///< two meshes
     STEP_PER_MESH_PAIR = 15,
     STEP_PER_SPHERE_PAIR = 8
 };
@@ -24,7 +22,6 @@ double scree_skin_of_least_cost(const scree_skin_input *input)
 {
     const double radius = input->mean_radius, way = input->moved / (double)input->num_steps;
     const double step_per_pair = input->has_meshes ? STEP_PER_MESH_PAIR : STEP_PER_SPHERE_PAIR;
-    const double search_per_pair = SEARCH_PER_PAIR + (input->has_meshes ? FIRST_LOOK_PER_PAIR : 0);
     const double before = radius + input->skin;
     double best = input->skin, least = INFINITY;
     // from a thousandth of the radius to twice it
@@ -32,7 +29,7 @@ double scree_skin_of_least_cost(const scree_skin_input *input)
     {
         const double around = radius + skin;
         const double num_pairs = input->num_pairs * (around * around * around) / (before * before * before);
-        const double search = SEARCH_PER_PARTICLE * input->num_particles + search_per_pair * num_pairs;
+        const double search = SEARCH_PER_PARTICLE * input->num_particles + SEARCH_PER_PAIR * num_pairs;
         const double steps_between = fmax(skin / way, 1);
         const double cost = search / steps_between + step_per_pair * num_pairs;
         if (cost < least)

@@ -31,7 +31,7 @@ static void test_choices_settle_at_the_minimum(void)
     // times s^2 increases, so it has one root
     const double radius = bed.mean_radius, way = bed.moved / (double)bed.num_steps;
     const double pairs = bed.num_pairs / ((radius + bed.skin) * (radius + bed.skin) * (radius + bed.skin));
-    const double a = 400 * bed.num_particles, b = 350 * pairs, c = 15 * pairs;
+    const double a = 400 * bed.num_particles, b = 100 * pairs, c = 15 * pairs;
     double low = 1e-6, high = 2e-3;
     for (int k = 0; k < 60; ++k)
     {

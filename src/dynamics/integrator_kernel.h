@@ -102,19 +102,31 @@ SCREE_FN scree_velocities scree_half_kick_and_drift(scree_moving_state *state, c
     return end;
 }
 
+SCREE_FN scree_moving_state scree_state_of(const scree_particles *particles, int64_t i)
+{
+    scree_moving_state state;
+    state.position = particles->position[i];
+    state.orientation = particles->orientation[i];
+    state.velocity = particles->velocity[i];
+    state.angular_momentum = particles->angular_momentum[i];
+    return state;
+}
+
+SCREE_FN scree_load scree_load_of(const scree_particles *particles, int64_t i)
+{
+    scree_load load;
+    load.force = particles->force[i];
+    load.torque = particles->torque[i];
+    load.mass = particles->mass[i];
+    load.inertia = particles->inertia[i];
+    return load;
+}
+
 /// First half kick, then drift, of particle i.
 SCREE_FN void scree_predict_at(scree_predict_args a, int64_t i)
 {
-    scree_moving_state state;
-    state.position = a.particles.position[i];
-    state.orientation = a.particles.orientation[i];
-    state.velocity = a.particles.velocity[i];
-    state.angular_momentum = a.particles.angular_momentum[i];
-    scree_load load;
-    load.force = a.particles.force[i];
-    load.torque = a.particles.torque[i];
-    load.mass = a.particles.mass[i];
-    load.inertia = a.particles.inertia[i];
+    scree_moving_state state = scree_state_of(&a.particles, i);
+    const scree_load load = scree_load_of(&a.particles, i);
     const scree_velocities end =
         scree_half_kick_and_drift(&state, &load, scree_is_isotropic(load.inertia), a.time_step);
 
@@ -154,16 +166,8 @@ SCREE_FN scree_real scree_sum_of_state(const scree_moving_state *state)
 /// Second half kick of particle i.
 SCREE_FN void scree_correct_at(scree_correct_args a, int64_t i)
 {
-    scree_moving_state state;
-    state.position = a.particles.position[i];
-    state.orientation = a.particles.orientation[i];
-    state.velocity = a.particles.velocity[i];
-    state.angular_momentum = a.particles.angular_momentum[i];
-    scree_load load;
-    load.force = a.particles.force[i];
-    load.torque = a.particles.torque[i];
-    load.mass = a.particles.mass[i];
-    load.inertia = a.particles.inertia[i];
+    scree_moving_state state = scree_state_of(&a.particles, i);
+    const scree_load load = scree_load_of(&a.particles, i);
     scree_second_half_kick(&state, &load, a.time_step);
 
     a.particles.velocity[i] = state.velocity;

@@ -424,11 +424,11 @@ static bool make_room(const search *s, const scree_pair_tally *tally, scree_stat
     return true;
 }
 
-/// How long pairs of meshes stay apart that no plane was found for.
+/// How long pairs of meshes stay apart that no plane was found for. Of no use if they are searched anew in each step.
 static void find_gaps(const search *s)
 {
     const scree_separation_use use = s->narrow_phase->separation;
-    if (use.finds && use.bounds)
+    if (use.finds && use.bounds && s->bodies.reach > 0)
         scree_mesh_gap_launch_on(s->narrow_phase->device, mesh_args(s),
                                  s->narrow_phase->buffers->batches[SCREE_PAIR_MESH_MESH].num);
 }

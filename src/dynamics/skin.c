@@ -1,8 +1,8 @@
 /// \file skin.c
 /// The cost of a step over the skin s, in nanoseconds of one core. Candidates grow with the volume around a particle,
 /// P(s) = P (R + s)^3 / (R + s0)^3 with the mean bounding radius R, and a search is needed every s/u steps, u being the
-/// way of the fastest bodies in one step. A search costs so much per particle and candidate, and every step looks at each
-/// candidate. The minimum is flat, so the constants need not be those of the machine.
+/// way of the fastest bodies in one step. A search costs so much per particle and candidate, and every step looks at
+/// each candidate. The minimum is flat, so the constants need not be those of the machine.
 #include "dynamics/skin.h"
 
 #include "dynamics/step_buffers.h"

@@ -91,6 +91,11 @@ scree_status scree_contact_list_reserve(scree_contact_list *list, int64_t num_co
     return SCREE_OK;
 }
 
+int64_t scree_contact_list_room(const scree_contact_list *list)
+{
+    return list->is_history || list->max_carried < list->max_contacts ? list->max_carried : list->max_contacts;
+}
+
 void scree_contact_list_pass_on(scree_contact_list *present, scree_contact_list *history)
 {
     const scree_contact_list was = *present;

@@ -71,6 +71,8 @@ void scree_contact_list_pass_on(scree_contact_list *present, scree_contact_list 
 /// Room for num_contacts and num_pairs, growing by a quarter at least. SCREE_OUT_OF_MEMORY leaves what the list holds
 /// as it was.
 scree_status scree_contact_list_reserve(scree_contact_list *list, int64_t num_contacts, int64_t num_pairs);
+/// Contacts that it has room for.
+int64_t scree_contact_list_room(const scree_contact_list *list);
 /// What one list has no use for, another has none for either.
 void scree_contact_list_share_uses(scree_contact_list *to, const scree_contact_list *from);
 /// The contacts of one list to another, which may lie elsewhere; not which pairs they belong to. SCREE_OUT_OF_MEMORY.

@@ -265,8 +265,6 @@ static scree_status sort_pairs(const search *s)
 {
     struct scree_narrow_phase_buffers *b = s->narrow_phase->buffers;
     scree_device *device = s->narrow_phase->device;
-    if (b->num_sorted == s->num_pairs) return SCREE_OK;
-    b->num_sorted = -1;
     scree_status status = scree_scan_reserve(&b->scan, s->num_pairs);
     for (int k = 0; k < SCREE_NUM_PAIR_KINDS && status == SCREE_OK; ++k)
     {
@@ -397,12 +395,11 @@ static void count_contacts(const search *s)
     scree_device_copy(device, &b->tally->num_contacts, first_of_pair + s->num_pairs, sizeof *first_of_pair);
 }
 
-/// More room for what had none. False if all had.
-static bool make_room(const search *s, const scree_pair_tally *tally, scree_status *status)
+/// More room for what had none.
+static scree_status make_room(const search *s, const scree_pair_tally *tally)
 {
     const struct scree_narrow_phase_buffers *b = s->narrow_phase->buffers;
     const int32_t most_results = (int32_t)scree_maximum_value(tally->most_results);
-    if (!scree_lacks_room(tally, b->max_kept)) return false;
     const bool lacks_kept = tally->num_kept > b->max_kept;
     const int32_t most_found = (int32_t)scree_maximum_value(tally->most_found);
     scree_overlap_room room = b->pool.room;
@@ -411,17 +408,13 @@ static bool make_room(const search *s, const scree_pair_tally *tally, scree_stat
     if (tally->num_lacking[SCREE_LACK_CROSSINGS] > 0) room.max_crossings *= 2;
     const int64_t num_lacking = tally->num_lacking[SCREE_LACK_PIECES] + tally->num_lacking[SCREE_LACK_SHAPE] +
                                 tally->num_lacking[SCREE_LACK_CROSSINGS];
-    if (most_found >> SCREE_PATCH_BITS > 0)
-    {
-        *status = SCREE_TOO_MANY;
-        return true;
-    }
-    *status = SCREE_OK;
-    if (num_lacking > 0 || most_results > 0) *status = reserve_slices(s->narrow_phase, room, most_results);
-    if (*status == SCREE_OK && lacks_kept)
-        *status = reserve_kept(s->narrow_phase, tally->num_kept, !s->list->has_no_levers);
-    if (*status == SCREE_OK && most_found > 0) *status = reserve_found(s->narrow_phase, most_found);
-    return true;
+    if (most_found >> SCREE_PATCH_BITS > 0) return SCREE_TOO_MANY;
+    scree_status status = SCREE_OK;
+    if (num_lacking > 0 || most_results > 0) status = reserve_slices(s->narrow_phase, room, most_results);
+    if (status == SCREE_OK && lacks_kept)
+        status = reserve_kept(s->narrow_phase, tally->num_kept, !s->list->has_no_levers);
+    if (status == SCREE_OK && most_found > 0) status = reserve_found(s->narrow_phase, most_found);
+    return status;
 }
 
 /// How long pairs of meshes stay apart that no plane was found for. Of no use if they are searched anew in each step.
@@ -447,35 +440,49 @@ static void write_contacts(const search *s)
                                       batches[SCREE_PAIR_SPHERE_MESH].num);
 }
 
+/// Candidate pairs have changed: batches of them, and room to begin with.
+static scree_status prepare_pairs(const search *s)
+{
+    scree_narrow_phase *narrow_phase = s->narrow_phase;
+    narrow_phase->buffers->num_sorted = -1;
+    scree_status status = scree_contact_list_reserve(s->list, 0, s->num_pairs);
+    if (status == SCREE_OK) status = sort_pairs(s);
+    if (status == SCREE_OK) status = reserve_mesh_pairs(narrow_phase);
+    if (status == SCREE_OK) status = reserve_found(narrow_phase, 3);
+    if (status == SCREE_OK) status = start_results(narrow_phase, !s->list->has_no_levers);
+    return status;
+}
+
 scree_status scree_narrow_phase_find(scree_narrow_phase *narrow_phase, const scree_bodies *bodies,
                                      const scree_candidate_pair *pairs, int64_t num_pairs, scree_contact_list *list)
 {
     const search s = {narrow_phase, *bodies, pairs, num_pairs, list};
     scree_status status = start(narrow_phase);
-    if (status == SCREE_OK) status = scree_contact_list_reserve(list, 0, num_pairs);
-    if (status == SCREE_OK) status = sort_pairs(&s);
-    if (status == SCREE_OK) status = reserve_mesh_pairs(narrow_phase);
-    if (status == SCREE_OK) status = reserve_found(narrow_phase, 3);
-    if (status == SCREE_OK) status = start_results(narrow_phase, !list->has_no_levers);
+    if (status != SCREE_OK) return status;
+    const struct scree_narrow_phase_buffers *b = narrow_phase->buffers;
+    const bool are_new = b->num_sorted != num_pairs;
+    if (are_new) status = prepare_pairs(&s);
     if (status == SCREE_OK) status = place_spheres(&s);
 
-    // a pair that had no room asks for a second, roomier search
     scree_pair_tally tally = {0};
-    for (bool is_complete = false; !is_complete && status == SCREE_OK;)
+    bool lacks_room = true;
+    while (lacks_room && status == SCREE_OK)
     {
         count_contacts(&s);
-        scree_device_read(narrow_phase->device, &tally, narrow_phase->buffers->tally, sizeof tally);
-        is_complete = !make_room(&s, &tally, &status);
+        scree_device_read(narrow_phase->device, &tally, b->tally, sizeof tally);
+        lacks_room = scree_lacks_room(&tally, b->max_kept);
+        if (!are_new) break;
+        // a pair that had no room asks for a second, roomier search
+        if (lacks_room) status = make_room(&s, &tally);
     }
-    if (status == SCREE_OK) find_gaps(&s);
-    if (status == SCREE_OK) status = scree_contact_list_reserve(list, tally.num_contacts, num_pairs);
-    if (status == SCREE_OK)
-    {
-        list->num_contacts = tally.num_contacts;
-        write_contacts(&s);
-    }
+    if (status == SCREE_OK && are_new) status = scree_contact_list_reserve(list, tally.num_contacts, num_pairs);
+    narrow_phase->lacks_room = lacks_room || tally.num_contacts > scree_contact_list_room(list);
+    if (status != SCREE_OK || narrow_phase->lacks_room) return status;
+    find_gaps(&s);
+    list->num_contacts = tally.num_contacts;
+    write_contacts(&s);
     scree_narrow_phase_take_counts(narrow_phase, &tally);
-    return status;
+    return SCREE_OK;
 }
 
 void scree_narrow_phase_again(scree_narrow_phase *narrow_phase, const scree_bodies *bodies,

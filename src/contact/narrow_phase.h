@@ -58,8 +58,9 @@ typedef struct scree_narrow_phase
     scree_work_classes classes; ///< of the pairs of meshes on a GPU, by their shapes; on the CPU one is enough
     scree_overlap_options options;
     scree_separation_use separation;
-    struct scree_pair_tally *tally;             ///< borrowed, where the arrays lie: for counting; NULL: its own
-    scree_narrow_phase_counts counts;           ///< of the last search
+    struct scree_pair_tally *tally;   ///< borrowed, where the arrays lie: for counting; NULL: its own
+    scree_narrow_phase_counts counts; ///< of the last search
+    bool lacks_room; ///< of the last search: contacts have no room, and there are none; search candidates first
     struct scree_narrow_phase_buffers *buffers; ///< internal
 } scree_narrow_phase;
 
@@ -73,7 +74,8 @@ void scree_narrow_phase_carry(scree_narrow_phase *narrow_phase, const scree_bodi
                               const scree_candidate_pair *pairs);
 
 /// Finds the contacts of all candidate pairs and writes the geometry of `list`; forces and history are left alone.
-/// Same list for any number of threads and on a GPU. SCREE_OUT_OF_MEMORY.
+/// Same list for any number of threads and on a GPU. Memory is only taken for pairs that are not those of the last
+/// time: for the same ones `lacks_room` tells that it did not do. SCREE_OUT_OF_MEMORY.
 scree_status scree_narrow_phase_find(scree_narrow_phase *narrow_phase, const scree_bodies *bodies,
                                      const scree_candidate_pair *pairs, int64_t num_pairs, scree_contact_list *list);
 /// The launches of scree_narrow_phase_find() for the same pairs as the last time, without waiting, to be recorded

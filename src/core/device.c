@@ -79,12 +79,19 @@ const char *scree_device_name(const scree_device *device)
 scree_status scree_device_reserve(scree_device *device, void *array, int64_t *max_items, int64_t num_items,
                                   size_t item_size)
 {
+    void *const *items = array;
+    if (num_items <= *max_items && *items != NULL) return SCREE_OK;
+    return scree_device_reserve_only(device, array, max_items, scree_buffer_grown(num_items), item_size);
+}
+
+scree_status scree_device_reserve_only(scree_device *device, void *array, int64_t *max_items, int64_t num_items,
+                                       size_t item_size)
+{
     void **items = array;
     if (num_items <= *max_items && *items != NULL) return SCREE_OK;
-    const int64_t grown = scree_buffer_grown(num_items);
     scree_device_free(device, *items);
-    *items = scree_device_alloc(device, grown, item_size);
-    *max_items = *items != NULL ? grown : 0;
+    *items = scree_device_alloc(device, num_items, item_size);
+    *max_items = *items != NULL ? num_items : 0;
     return *items != NULL ? SCREE_OK : SCREE_OUT_OF_MEMORY;
 }
 

@@ -87,6 +87,9 @@ extern "C"
     /// SCREE_OUT_OF_MEMORY leaves *array NULL and *max_items 0.
     scree_status scree_device_reserve(scree_device *device, void *array, int64_t *max_items, int64_t num_items,
                                       size_t item_size);
+    /// The same without growing by more than is asked for.
+    scree_status scree_device_reserve_only(scree_device *device, void *array, int64_t *max_items, int64_t num_items,
+                                           size_t item_size);
 
 #ifdef __cplusplus
 }

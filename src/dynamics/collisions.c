@@ -31,25 +31,37 @@ void scree_spectrum_destroy(scree_spectrum *spectrum)
     *spectrum = (scree_spectrum){0};
 }
 
+/// Room for so many contacts; what is known of those that there are stays.
+static scree_status grow(scree_collisions *collisions, int64_t max_contacts)
+{
+    scree_device *device = collisions->device;
+    if (max_contacts <= collisions->max_contacts && collisions->normal != NULL) return SCREE_OK;
+    double *normal = scree_device_alloc(device, max_contacts, sizeof *normal);
+    double *tangential = scree_device_alloc(device, max_contacts, sizeof *tangential);
+    if (normal == NULL || tangential == NULL)
+    {
+        scree_device_free(device, normal);
+        scree_device_free(device, tangential);
+        return SCREE_OUT_OF_MEMORY;
+    }
+    const size_t num_bytes = (size_t)collisions->num_contacts * sizeof *normal;
+    scree_device_copy(device, normal, collisions->normal, num_bytes);
+    scree_device_copy(device, tangential, collisions->tangential, num_bytes);
+    scree_device_free(device, collisions->normal);
+    scree_device_free(device, collisions->tangential);
+    collisions->max_contacts = max_contacts;
+    collisions->normal = normal;
+    collisions->tangential = tangential;
+    return SCREE_OK;
+}
+
 scree_status scree_collisions_reserve(scree_collisions *collisions, int64_t num_contacts)
 {
     scree_device *device = collisions->device;
     if (num_contacts > collisions->max_contacts || collisions->normal == NULL)
     {
-        const int64_t max = scree_buffer_grown(num_contacts);
-        double *normal = scree_device_alloc(device, max, sizeof *normal);
-        double *tangential = scree_device_alloc(device, max, sizeof *tangential);
-        if (normal == NULL || tangential == NULL)
-        {
-            scree_device_free(device, normal);
-            scree_device_free(device, tangential);
-            return SCREE_OUT_OF_MEMORY;
-        }
-        scree_device_free(device, collisions->normal);
-        scree_device_free(device, collisions->tangential);
-        collisions->max_contacts = max;
-        collisions->normal = normal;
-        collisions->tangential = tangential;
+        const scree_status status = grow(collisions, scree_buffer_grown(num_contacts));
+        if (status != SCREE_OK) return status;
     }
     collisions->num_contacts = num_contacts;
     scree_device_zero(device, collisions->normal, (size_t)num_contacts * sizeof *collisions->normal);
@@ -113,6 +125,22 @@ static void count(const scree_averages *averages, scree_spectrum *spectrum, cons
     spectrum->energy_tangential[tangential] += collision->tangential;
 }
 
+/// Room for as many contacts as the lists have, which grow at searches only.
+static scree_status make_room(scree_averages *averages, scree_device *device, int64_t max_contacts)
+{
+    averages->scan.device = device;
+    scree_status status = grow(&averages->collisions, max_contacts);
+    if (status == SCREE_OK) status = grow(&averages->old_collisions, max_contacts);
+    if (status == SCREE_OK) status = scree_scan_reserve(&averages->scan, max_contacts);
+    if (status == SCREE_OK)
+        status = scree_device_reserve_only(device, &averages->ended_places, &averages->max_places, max_contacts + 1,
+                                           sizeof *averages->ended_places);
+    if (status == SCREE_OK)
+        status = scree_device_reserve_only(device, &averages->ended, &averages->max_ended, max_contacts,
+                                           sizeof *averages->ended);
+    return status;
+}
+
 /// The collisions that this step found ended are put together, in the order of the contacts, and come to the host.
 static scree_status count_ended(scree_simulation *simulation, scree_simulation *there)
 {
@@ -120,12 +148,6 @@ static scree_status count_ended(scree_simulation *simulation, scree_simulation *
     const scree_collisions *old = &scratch->old_collisions;
     const int64_t num_old = old->num_contacts;
     scree_device *device = there->device;
-    scratch->scan.device = device;
-    scree_status status = scree_device_reserve(device, &scratch->ended_places, &scratch->max_places, num_old + 1,
-                                               sizeof *scratch->ended_places);
-    if (status == SCREE_OK) status = scree_scan_reserve(&scratch->scan, num_old);
-    if (status != SCREE_OK) return status;
-
     scree_ended_collisions_args args;
     args.bodies = there->old_contacts.bodies;
     args.is_continued = there->buffers->is_continued;
@@ -139,13 +161,8 @@ static scree_status count_ended(scree_simulation *simulation, scree_simulation *
     int64_t num = 0;
     scree_device_read(device, &num, args.places + num_old, sizeof num);
     if (num == 0) return SCREE_OK;
-    status = scree_device_reserve(device, &scratch->ended, &scratch->max_ended, num, sizeof *scratch->ended);
     scree_ended_collision *ended = calloc((size_t)num, sizeof *ended);
-    if (status != SCREE_OK || ended == NULL)
-    {
-        free(ended);
-        return SCREE_OUT_OF_MEMORY;
-    }
+    if (ended == NULL) return SCREE_OUT_OF_MEMORY;
     args.ended = scratch->ended;
     scree_ended_collisions_launch_on(device, args, num_old);
     scree_device_read(device, ended, scratch->ended, (size_t)num * sizeof *ended);
@@ -159,11 +176,13 @@ scree_status scree_update_collisions(scree_simulation *simulation)
     if (simulation->averages.num_bins == 0) return SCREE_OK;
     scree_simulation *there = scree_simulation_there(simulation);
     scree_averages *averages = &there->averages;
+    const int64_t num_contacts = there->contacts.num_contacts;
+    scree_status status = make_room(averages, there->device, there->contacts.max_contacts);
+    if (status != SCREE_OK) return status;
     const scree_collisions last = averages->collisions;
     averages->collisions = averages->old_collisions;
     averages->old_collisions = last;
-    const int64_t num_contacts = there->contacts.num_contacts;
-    const scree_status status = scree_collisions_reserve(&averages->collisions, num_contacts);
+    status = scree_collisions_reserve(&averages->collisions, num_contacts);
     if (status != SCREE_OK) return status;
 
     scree_collision_args args;

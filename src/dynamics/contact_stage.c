@@ -6,25 +6,35 @@
 #include <math.h>
 #include <string.h>
 
-scree_status scree_reserve_contact_sums(scree_simulation *simulation)
+/// Room in all arrays over contacts for those of the steps until the next search, some more than now.
+static scree_status make_room(scree_simulation *s)
 {
-    const scree_simulation *s = simulation;
     scree_step_buffers *b = s->buffers;
-    const int64_t num = s->contacts.num_contacts, num_old = s->old_contacts.num_contacts;
-    b->num_ended_blocks = scree_count_blocks(num_old, SCREE_WORK_BLOCK);
-    const int64_t num_blocks = b->num_ended_blocks + scree_count_blocks(num, SCREE_WORK_BLOCK);
+    scree_device *device = s->device;
+    const int64_t num = s->contacts.num_contacts, wanted = num + num / 16 + 16;
+    scree_status status = scree_contact_list_reserve(&s->contacts, wanted, s->broad_phase.num_pairs);
+    // the two lists change places
+    if (status == SCREE_OK) status = scree_contact_list_reserve(&s->old_contacts, wanted, s->broad_phase.num_pairs);
+    if (status != SCREE_OK) return status;
+    // none of them ever has more contacts than that
+    const int64_t most = s->contacts.max_contacts, num_blocks = 2 * scree_count_blocks(most, SCREE_WORK_BLOCK);
     // sums of sums, down to one, take less than a 255th of them
     const int64_t num_sums = num_blocks + num_blocks / (SCREE_SUM_FAN_IN - 1) + 8;
-    scree_status status =
-        scree_device_reserve(s->device, &b->old_of_contact, &b->max_contacts, num, sizeof *b->old_of_contact);
+    status = scree_device_reserve_only(device, &b->old_of_contact, &b->max_contacts, most, sizeof *b->old_of_contact);
     if (status == SCREE_OK)
-        status = scree_device_reserve(s->device, &b->is_continued, &b->max_old, num_old, sizeof *b->is_continued);
+        status = scree_device_reserve_only(device, &b->is_continued, &b->max_old, most, sizeof *b->is_continued);
     if (status == SCREE_OK)
-        status = scree_device_reserve(s->device, &b->work_sums, &b->max_work_sums, num_sums, sizeof *b->work_sums);
-    if (status == SCREE_OK && s->device != NULL)
-        status = scree_device_reserve(s->device, &b->sides, &b->max_sides, num, 2 * sizeof *b->sides);
-    if (status == SCREE_OK) status = scree_reserve_wall_loads(simulation);
+        status = scree_device_reserve_only(device, &b->work_sums, &b->max_work_sums, num_sums, sizeof *b->work_sums);
+    if (status == SCREE_OK && device != NULL)
+        status = scree_device_reserve_only(device, &b->sides, &b->max_sides, most, 2 * sizeof *b->sides);
+    if (status == SCREE_OK) status = scree_reserve_wall_loads(s, most);
     return status;
+}
+
+/// Sums of ended contacts, before those of the present ones.
+static int64_t count_ended_blocks(const scree_simulation *s)
+{
+    return scree_count_blocks(s->old_contacts.num_contacts, SCREE_WORK_BLOCK);
 }
 
 /// What ended contacts had stored, and the largest indentation.
@@ -34,7 +44,7 @@ static void sum_up_contacts(const scree_simulation *s)
     const int64_t num = s->contacts.num_contacts;
     const scree_ended_args ended = {s->old_contacts.elastic_energy, s->old_contacts.spring_energy, b->is_continued,
                                     s->old_contacts.num_contacts, b->work_sums};
-    scree_ended_launch_on(s->device, ended, b->num_ended_blocks);
+    scree_ended_launch_on(s->device, ended, count_ended_blocks(s));
     const scree_indentations_args indentations = {s->contacts.indentation, num, &b->tally->largest_indentation};
     scree_indentations_launch_on(s->device, indentations, scree_count_blocks(num, SCREE_WORK_BLOCK));
 }
@@ -88,16 +98,27 @@ void scree_count_contacts(scree_simulation *simulation)
     counters->worst_residual = fmax(counters->worst_residual, (double)counts->worst_residual);
 }
 
+static scree_status find_contacts(scree_simulation *s)
+{
+    const scree_bodies bodies = scree_step_bodies(s);
+    const scree_status status = scree_narrow_phase_find(&s->narrow_phase, &bodies, s->broad_phase.pairs,
+                                                        s->broad_phase.num_pairs, &s->contacts);
+    scree_stage_end(&s->clock, SCREE_STAGE_CONTACTS);
+    return status;
+}
+
 scree_status scree_update_contacts(scree_simulation *simulation)
 {
-    const scree_broad_phase *broad_phase = &simulation->broad_phase;
-    // the old list keeps its order by pair as long as no search comes between
     scree_contact_list_pass_on(&simulation->contacts, &simulation->old_contacts);
-    const scree_bodies bodies = scree_step_bodies(simulation);
-    scree_status status = scree_narrow_phase_find(&simulation->narrow_phase, &bodies, broad_phase->pairs,
-                                                  broad_phase->num_pairs, &simulation->contacts);
-    scree_stage_end(&simulation->clock, SCREE_STAGE_CONTACTS);
-    if (status == SCREE_OK) status = scree_reserve_contact_sums(simulation);
+    scree_status status = find_contacts(simulation);
+    if (status == SCREE_OK && simulation->narrow_phase.lacks_room)
+    {
+        // memory is taken after searches only, for what is found then
+        status = scree_search_neighbours(simulation);
+        if (status == SCREE_OK) status = find_contacts(simulation);
+    }
+    // the old list keeps its order by pair as long as no search comes between
+    if (status == SCREE_OK && !simulation->buffers->is_old_list_of_same_pairs) status = make_room(simulation);
     if (status != SCREE_OK) return status;
     match_contacts(simulation);
     simulation->buffers->is_old_list_of_same_pairs = true;
@@ -179,6 +200,7 @@ void scree_sum_work(scree_simulation *simulation)
 {
     const scree_step_buffers *b = simulation->buffers;
     const int64_t num_blocks = scree_count_blocks(simulation->contacts.num_contacts, SCREE_WORK_BLOCK);
+    const int64_t num_ended = count_ended_blocks(simulation);
     scree_work_args work;
     work.contacts = scree_contact_list_view(&simulation->contacts);
     work.bodies = scree_step_body_motion(b);
@@ -187,9 +209,9 @@ void scree_sum_work(scree_simulation *simulation)
     work.num_materials = simulation->num_materials;
     work.num_particles = (int32_t)simulation->particles.num_particles;
     work.time_step = (scree_real)simulation->time_step;
-    work.sums = b->work_sums + b->num_ended_blocks;
+    work.sums = b->work_sums + num_ended;
     scree_work_launch_on(simulation->device, work, num_blocks);
-    reduce_work(simulation, b->num_ended_blocks + num_blocks);
+    reduce_work(simulation, num_ended + num_blocks);
 }
 
 void scree_fetch_board(scree_simulation *simulation)

@@ -2,16 +2,13 @@
 /// Steps between two searches on a GPU. Their calls are the same each time but for numbers that the host would wait
 /// for: how far bodies have moved, how many contacts there are. So the calls are recorded (device.h) with room for some
 /// more contacts, while both lists count as full; when they are played, launches look the numbers up on the device, and
-/// the host waits once, at the end. If a search is due or room is lacking, the rest of the recording does nothing, and
-/// the step goes on from there call by call, as on the CPU.
+/// the host waits once, at the end. If a search is due, or room is lacking and it is due for that, the rest of the
+/// recording does nothing, and the step goes on from there call by call, as on the CPU.
 #include "contact/narrow_phase.h"
 #include "dynamics/dynamics.h"
 #include "dynamics/step_buffers.h"
 
 #include <string.h>
-
-/// Contacts to make room for: without some to spare a growing bed would halt in every step.
-static int64_t with_some_to_spare(int64_t num) { return num + num / 16 + 16; }
 
 static int64_t smaller(int64_t a, int64_t b) { return a < b ? a : b; }
 
@@ -30,30 +27,12 @@ static bool is_steady(const scree_simulation *s)
            !b->is_search_asked && b->is_old_list_of_same_pairs && !scree_have_walls_changed(s);
 }
 
-/// Room in all arrays over contacts, so that nothing is allocated while calls are recorded.
-static scree_status make_room(scree_simulation *s)
-{
-    scree_step_buffers *b = s->buffers;
-    const int64_t num = s->contacts.num_contacts, num_old = s->old_contacts.num_contacts;
-    const int64_t wanted = with_some_to_spare(num), num_pairs = s->broad_phase.num_pairs;
-    scree_status status = scree_contact_list_reserve(&s->contacts, wanted, num_pairs);
-    if (status == SCREE_OK) status = scree_contact_list_reserve(&s->old_contacts, wanted, num_pairs);
-    if (status != SCREE_OK) return status;
-    b->max_recorded = smaller(s->contacts.max_contacts, smaller(s->contacts.max_carried, s->old_contacts.max_carried));
-    set_numbers(s, b->max_recorded, b->max_recorded);
-    status = scree_reserve_contact_sums(s);
-    set_numbers(s, num, num_old);
-    return status;
-}
-
 /// All calls of a step, with lists that count as full.
 static bool record(scree_simulation *s, scree_recording **recording)
 {
     scree_step_buffers *b = s->buffers;
     const int64_t num_old = s->old_contacts.num_contacts;
     set_numbers(s, b->max_recorded, b->max_recorded);
-    // there is room: this only tells where the sums stand
-    if (scree_reserve_contact_sums(s) != SCREE_OK) return false;
     scree_device_record(s->device, &b->board->live);
     scree_device_send(s->device, &b->board->live, b->live_here, sizeof *b->live_here);
     scree_predict_motion(s);
@@ -95,29 +74,26 @@ static void take_contacts(scree_simulation *s)
     scree_count_contacts(s);
 }
 
-scree_status scree_play_step(scree_simulation *simulation, scree_halt *halt)
+scree_halt scree_play_step(scree_simulation *simulation)
 {
     scree_simulation *s = simulation;
     scree_step_buffers *b = s->buffers;
-    *halt = SCREE_HALT_START;
-    const bool is_new = !b->is_recorded[0] && !b->is_recorded[1];
-    scree_status status = SCREE_OK;
+    scree_halt halt = SCREE_HALT_START;
     if (is_steady(s))
     {
-        if (is_new) status = make_room(s);
-        if (status != SCREE_OK) return status;
+        b->max_recorded = smaller(scree_contact_list_room(&s->contacts), scree_contact_list_room(&s->old_contacts));
         const int64_t num_old = s->contacts.num_contacts;
         const int parity = (int)(s->step & 1);
         scree_contact_list_pass_on(&s->contacts, &s->old_contacts);
         if (!b->is_recorded[parity]) b->is_recorded[parity] = record(s, b->recordings + parity);
-        if (b->is_recorded[parity]) *halt = play(s, b->recordings[parity]);
+        if (b->is_recorded[parity]) halt = play(s, b->recordings[parity]);
         const scree_step_tally *tally = &b->board_here->tally;
-        if (*halt != SCREE_HALT_START) b->moved = scree_moved_apart(tally->particles_moved, tally->walls_moved);
-        ++b->num_halts[*halt];
-        if (*halt == SCREE_HALT_NONE)
+        if (halt != SCREE_HALT_START) b->moved = scree_moved_apart(tally->particles_moved, tally->walls_moved);
+        ++b->num_halts[halt];
+        if (halt == SCREE_HALT_NONE)
         {
             take_contacts(s);
-            return SCREE_OK;
+            return halt;
         }
         // back to the lists as they were: those of the step before have not been touched
         scree_contact_list_pass_on(&s->contacts, &s->old_contacts);
@@ -125,7 +101,7 @@ scree_status scree_play_step(scree_simulation *simulation, scree_halt *halt)
     }
     // what comes now may change sizes and places
     b->is_recorded[0] = b->is_recorded[1] = false;
-    return SCREE_OK;
+    return halt;
 }
 
 void scree_forget_recordings(scree_step_buffers *buffers)

@@ -40,7 +40,8 @@ static scree_status check_contacts(const scree_simulation *s, scree_report *repo
 /// The step from where its recording halted, call by call.
 static scree_status advance_from(scree_simulation *s, scree_halt halt, scree_report *report)
 {
-    bool is_search_due = halt == SCREE_HALT_SEARCH;
+    // room is made at searches
+    bool is_search_due = halt == SCREE_HALT_SEARCH || halt == SCREE_HALT_ROOM;
     if (halt == SCREE_HALT_START)
     {
         scree_predict_motion(s);
@@ -72,9 +73,8 @@ static scree_status advance(scree_simulation *s, scree_report *report)
     scree_stage_begin(&s->clock);
     // the walls follow their prescribed motion
     scree_move_walls(s, (double)s->step * s->time_step);
-    scree_halt halt = SCREE_HALT_START;
-    scree_status status = scree_play_step(s, &halt);
-    if (status == SCREE_OK && halt != SCREE_HALT_NONE) status = advance_from(s, halt, report);
+    const scree_halt halt = scree_play_step(s);
+    const scree_status status = halt != SCREE_HALT_NONE ? advance_from(s, halt, report) : SCREE_OK;
     if (status != SCREE_OK) return status;
     scree_take_board(s);
     scree_account_wall_loads(s);

@@ -59,7 +59,6 @@ typedef struct scree_step_buffers
     int64_t max_sides;          ///< contacts
     scree_work_sums *work_sums; ///< of blocks of ended contacts, of blocks of contacts, and of these sums
     int64_t max_work_sums;
-    int64_t num_ended_blocks;
 
     scree_step_board *board;
     scree_step_board *board_here; ///< a copy on the CPU, of the end of the last step
@@ -104,6 +103,7 @@ bool scree_is_search_due(scree_simulation *simulation);
 /// Candidate pairs of the present poses.
 scree_status scree_search_neighbours(scree_simulation *simulation);
 /// Contacts of the present poses and which old ones they continue; old ones that ended leave their energy to the sums.
+/// If contacts have no room, candidate pairs are searched first: no step without a search takes memory.
 scree_status scree_update_contacts(scree_simulation *simulation);
 /// Forces of the contacts and of gravity on the particles.
 void scree_update_forces(scree_simulation *simulation);
@@ -120,16 +120,14 @@ void scree_take_board(scree_simulation *simulation);
 
 // What recorded steps share with the others.
 
-/// Room for the sums over the contacts that touch walls.
-scree_status scree_reserve_wall_loads(scree_simulation *simulation);
-/// Room for the contacts that the two lists have, and for the sums over them.
-scree_status scree_reserve_contact_sums(scree_simulation *simulation);
+/// Room for sums over num_contacts, of those that touch walls.
+scree_status scree_reserve_wall_loads(scree_simulation *simulation, int64_t num_contacts);
 /// scree_update_contacts() for the candidate pairs of the step before, after the lists have changed places.
 void scree_update_contacts_again(scree_simulation *simulation);
 /// What was found of the contacts to the counters.
 void scree_count_contacts(scree_simulation *simulation);
-/// Does the step as far as it can be played on a GPU. *halt: where it must go on from, or SCREE_HALT_NONE.
-scree_status scree_play_step(scree_simulation *simulation, scree_halt *halt);
+/// Does the step as far as it can be played on a GPU. Returns where it must go on from, or SCREE_HALT_NONE.
+scree_halt scree_play_step(scree_simulation *simulation);
 void scree_forget_recordings(scree_step_buffers *buffers);
 
 /// The bodies as the narrow phase sees them.

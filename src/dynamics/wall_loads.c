@@ -64,11 +64,11 @@ static double rate_of(const scree_simulation *s, int32_t wall, const scree_wall_
     return (double)scree_vec3_dot(axis->is_rotating ? state->angular_velocity : state->velocity, axis->direction);
 }
 
-scree_status scree_reserve_wall_loads(scree_simulation *simulation)
+scree_status scree_reserve_wall_loads(scree_simulation *simulation, int64_t num_contacts)
 {
     scree_step_buffers *b = simulation->buffers;
     if (b->num_moving_walls == 0) return SCREE_OK;
-    const int64_t num_parts = scree_count_blocks(simulation->contacts.num_contacts, SCREE_WALL_LOAD_BLOCK);
+    const int64_t num_parts = scree_count_blocks(num_contacts, SCREE_WALL_LOAD_BLOCK);
     // sums of sums, down to one, take less than a 255th of them
     const int64_t num_sums = (num_parts + num_parts / (SCREE_SUM_FAN_IN - 1) + 8) * b->num_moving_walls;
     return scree_device_reserve(simulation->device, &b->load_sums, &b->max_load_sums, num_sums, sizeof *b->load_sums);

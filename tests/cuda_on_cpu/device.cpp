@@ -62,6 +62,7 @@ struct device
     std::deque<std::function<void()>> queue;
     size_t num_bytes = 0;
     long num_launches = 0;
+    long num_allocations = 0;
     long num_left = settings().no_memory_at - 1; ///< allocations that there is memory for; < 0: any
     cudaError_t last_error = cudaSuccess;
     bool is_lost = false; ///< after a fault of a kernel every call fails
@@ -243,6 +244,8 @@ void drain()
 
 void allow_allocations(long num) { the_device().num_left = num; }
 
+long num_allocations() { return the_device().num_allocations; }
+
 void refuse_graphs(bool refuses) { the_device().refuses_graphs = refuses; }
 
 int launch(const char *kernel, const launch_shape &shape, std::function<void()> body, cudaStream_t stream)
@@ -369,6 +372,7 @@ cudaError_t cudaStreamSynchronize(cudaStream_t) { return cudaDeviceSynchronize()
 cudaError_t cudaMalloc(void **address, size_t num_bytes)
 {
     device &d = the_device();
+    ++d.num_allocations;
     if (is_capturing()) return break_capture(cudaErrorStreamCaptureUnsupported);
     if (num_bytes == 0 || d.num_left == 0 || d.num_bytes + num_bytes > settings().memory)
         return remember(cudaErrorMemoryAllocation);

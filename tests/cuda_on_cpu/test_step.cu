@@ -124,14 +124,19 @@ static std::string landing()
 #define SCREE_TEST_ARENA_BYTES (1 << 20)
 #endif
 
-static scree_device *open_device(int32_t block, bool records = true)
+/// Bytes of a block of the arena; 0 where a sanitizer looks for the ends of the arrays.
+static int64_t usual_arena()
+{
+    const char *arena = std::getenv("SCREE_TEST_ARENA");
+    return arena != nullptr ? std::strtoll(arena, nullptr, 10) : SCREE_TEST_ARENA_BYTES;
+}
+
+static scree_device *open_device(int32_t block, bool records = true, int64_t arena_bytes = usual_arena())
 {
     scree_device_def def = scree_default_device_def();
     def.block = block;
     def.records = records;
-    // 0 where a sanitizer looks for the ends of the arrays
-    const char *arena = std::getenv("SCREE_TEST_ARENA");
-    def.arena_bytes = arena != nullptr ? std::strtoll(arena, nullptr, 10) : SCREE_TEST_ARENA_BYTES;
+    def.arena_bytes = arena_bytes;
     scree_device *device = nullptr;
     scree_report report = {};
     if (scree_device_open(&device, &def, &report) == SCREE_OK) return device;
@@ -310,7 +315,39 @@ static void test_sides_change_at_checkpoints()
 }
 
 #if defined(CUDA_ON_CPU) && !defined(CUDA_ON_CPU_RACES)
-#define TEST_MEMORY_ENDS 1
+#define TEST_MEMORY 1
+/// Contacts become more and more: arrays are taken in steps that search, and in no other.
+static void check_taken_at_searches(const std::string &text, bool records)
+{
+    scene_run run;
+    scene_run_start(&run, text.c_str());
+    scree_device *device = open_device(128, records, 0);
+    move(run.simulation, device);
+    const scree_simulation *there = run.simulation->there;
+    int64_t num_growing = 0;
+    for (int k = 0; k < 240; ++k)
+    {
+        const long num_before = cuda_on_cpu::num_allocations();
+        const int64_t searches = there->counters.num_rebuilds, room = there->contacts.max_contacts;
+        steps(run.simulation, 1);
+        if (there->counters.num_rebuilds == searches) SCREE_CHECK_INT(cuda_on_cpu::num_allocations(), num_before);
+        num_growing += k > 0 && there->contacts.max_contacts > room;
+        SCREE_CHECK(there->counters.num_rebuilds <= searches + 1);
+    }
+    printf("%s: room for contacts grew in %lld of 240 steps\n", run.file.scene.name, (long long)num_growing);
+    SCREE_CHECK(num_growing > 0);
+    scene_run_end(&run);
+    scree_device_close(device);
+}
+static void test_memory_is_taken_at_searches()
+{
+    for (int records = 0; records < 2; ++records)
+    {
+        check_taken_at_searches(landing(), records != 0);
+        check_taken_at_searches(mixed(), records != 0);
+    }
+}
+
 /// Memory ends at every one of the allocations of a run in turn: it is told, the state before is still the CPU's,
 /// nothing is lost but the step, and the device can be used again.
 static void test_memory_ends()
@@ -361,7 +398,8 @@ int main()
     SCREE_RUN(test_no_room);
     SCREE_RUN(test_call_by_call);
     SCREE_RUN(test_sides_change_at_checkpoints);
-#ifdef TEST_MEMORY_ENDS
+#ifdef TEST_MEMORY
+    SCREE_RUN(test_memory_is_taken_at_searches);
     SCREE_RUN(test_memory_ends);
 #endif
     return SCREE_TEST_END();

@@ -102,6 +102,8 @@ void drain();
 
 /// From now on there is memory for so many allocations; < 0: for all that fit.
 void allow_allocations(long num);
+/// Arrays that the device was asked for so far.
+long num_allocations();
 
 /// From now on graphs can be captured, but not be made ready for launches; false: they can.
 void refuse_graphs(bool refuses);

@@ -98,6 +98,19 @@ SCREE_FN scree_closest_point scree_closest_on_triangle(const scree_shape_view *m
     return closest;
 }
 
+/// Bound of what rounding does to the distance of a centre that is found for triangle t. Its normal and the sides of
+/// its edges come from the difference of products of lengths over the area, which makes slivers the worst.
+SCREE_FN scree_real scree_closest_rounding(const scree_shape_view *mesh, int32_t t, scree_vec3 centre)
+{
+    const int32_t *v = mesh->triangles[t].v;
+    const scree_vec3 a = mesh->vertices[v[0]];
+    const scree_vec3 ab = scree_vec3_sub(mesh->vertices[v[1]], a), ac = scree_vec3_sub(mesh->vertices[v[2]], a);
+    const scree_vec3 from_a = scree_vec3_sub(centre, a);
+    const scree_real squares = scree_vec3_dot(ab, ab) + scree_vec3_dot(ac, ac) + scree_vec3_dot(from_a, from_a);
+    const scree_real double_area = scree_vec3_length(scree_vec3_cross(ab, ac));
+    return 64 * SCREE_REAL_EPSILON * scree_sqrt(squares) * (squares / double_area);
+}
+
 /// A surface that is approached: where the nearest point lies, seen from the centre.
 typedef struct scree_approach
 {
@@ -191,6 +204,28 @@ SCREE_FN bool scree_is_local_minimum(const scree_shape_view *mesh, scree_vec3 ce
         t = mesh->neighbours[3 * t + scree_corner_of(mesh, t, v)];
     }
     return true;
+}
+
+/// Leaves of the mesh's tree whose triangles are nearer than `radius`, or would be found nearer within rounding, in the
+/// order of the tree. Returns how many there are; no more than max_leaves of them are written.
+SCREE_FN int32_t scree_leaves_within(const scree_shape_view *mesh, scree_vec3 centre, scree_real radius,
+                                     int32_t *leaves, int32_t max_leaves)
+{
+    int32_t num = 0, k = mesh->tree.root;
+    while (k != SCREE_LBVH_END)
+    {
+        const scree_lbvh_node *node = mesh->tree.nodes + k;
+        const int32_t here = k;
+        const bool is_met = scree_box_distance_squared(node->box, centre) <= radius * radius;
+        k = is_met && node->first_child >= 0 ? node->first_child : node->escape;
+        if (!is_met || node->first_child >= 0) continue;
+        const int32_t t = -1 - node->first_child;
+        const scree_real within = radius + scree_closest_rounding(mesh, t, centre);
+        if (scree_closest_on_triangle(mesh, t, centre).squared > within * within) continue;
+        if (num < max_leaves) leaves[num] = here;
+        ++num;
+    }
+    return num;
 }
 
 /// The nearest point of the whole surface; the mesh must have triangles.

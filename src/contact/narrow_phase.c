@@ -43,8 +43,8 @@ struct scree_narrow_phase_buffers
     int64_t max_bodies;
 
     // a sphere and a mesh
-    int32_t *start; ///< (max_starts) per pair
-    int64_t max_starts;
+    scree_near_nodes *near; ///< (max_near) per pair
+    int64_t max_near;
     scree_sphere_contact *found; ///< (num in batch, max_found)
     int64_t max_sphere_mesh_pairs;
     int32_t max_found; ///< per pair
@@ -69,7 +69,7 @@ void scree_narrow_phase_destroy(scree_narrow_phase *narrow_phase)
         scree_device_free(device, b->old_memory);
         scree_device_free(device, b->spheres);
         scree_device_free(device, b->found);
-        scree_device_free(device, b->start);
+        scree_device_free(device, b->near);
         free(b);
     }
     *narrow_phase = (scree_narrow_phase){.device = device, .tally = narrow_phase->tally};
@@ -260,6 +260,37 @@ static scree_status take_memory(const search *s)
     return SCREE_OK;
 }
 
+static scree_sphere_pairs_args sphere_args(const search *s, scree_pair_kind kind)
+{
+    const struct scree_narrow_phase_buffers *b = s->narrow_phase->buffers;
+    scree_sphere_pairs_args args;
+    args.spheres = b->spheres;
+    args.shapes = s->bodies.shapes;
+    args.shape = s->bodies.shape;
+    args.pose = s->bodies.pose;
+    args.pairs = s->pairs;
+    args.batch = b->batches[kind].pairs;
+    args.list = scree_contact_list_view(s->list);
+    args.near = b->near;
+    args.reach = s->narrow_phase->separation.bounds ? s->bodies.reach : 0;
+    args.found = b->found;
+    args.max_found = b->max_found;
+    args.tally = b->tally;
+    return args;
+}
+
+/// Which parts of meshes spheres can meet until the pairs change.
+static scree_status find_near(const search *s)
+{
+    struct scree_narrow_phase_buffers *b = s->narrow_phase->buffers;
+    scree_device *device = s->narrow_phase->device;
+    const int64_t num = b->batches[SCREE_PAIR_SPHERE_MESH].num;
+    if (num == 0) return SCREE_OK;
+    const scree_status status = scree_device_reserve(device, &b->near, &b->max_near, num, sizeof *b->near);
+    if (status == SCREE_OK) scree_sphere_mesh_near_launch_on(device, sphere_args(s, SCREE_PAIR_SPHERE_MESH), num);
+    return status;
+}
+
 /// Candidate pairs to batches, after they have changed. The list's array over pairs is not yet in use.
 static scree_status sort_pairs(const search *s)
 {
@@ -282,10 +313,8 @@ static scree_status sort_pairs(const search *s)
     }
     if (status == SCREE_OK) status = take_memory(s);
     if (status != SCREE_OK) return status;
-    const int64_t num_on_meshes = b->batches[SCREE_PAIR_SPHERE_MESH].num;
-    status = scree_device_reserve(device, &b->start, &b->max_starts, num_on_meshes, sizeof *b->start);
+    status = find_near(s);
     if (status != SCREE_OK) return status;
-    scree_device_zero(device, b->start, (size_t)num_on_meshes * sizeof *b->start);
     b->num_sorted = s->num_pairs;
     return SCREE_OK;
 }
@@ -309,25 +338,6 @@ static scree_mesh_pairs_args mesh_args(const search *s)
     args.list = scree_contact_list_view(s->list);
     args.tally = b->tally;
     args.use = s->narrow_phase->separation;
-    return args;
-}
-
-static scree_sphere_pairs_args sphere_args(const search *s, scree_pair_kind kind)
-{
-    const struct scree_narrow_phase_buffers *b = s->narrow_phase->buffers;
-    scree_sphere_pairs_args args;
-    args.spheres = b->spheres;
-    args.shapes = s->bodies.shapes;
-    args.shape = s->bodies.shape;
-    args.pose = s->bodies.pose;
-    args.pairs = s->pairs;
-    args.batch = b->batches[kind].pairs;
-    args.list = scree_contact_list_view(s->list);
-    args.start = b->start;
-    args.reach = s->narrow_phase->separation.bounds ? s->bodies.reach : 0;
-    args.found = b->found;
-    args.max_found = b->max_found;
-    args.tally = b->tally;
     return args;
 }
 

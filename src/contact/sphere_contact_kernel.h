@@ -153,11 +153,12 @@ SCREE_FN scree_sphere_on_mesh scree_sphere_to_mesh(scree_vec3 centre, scree_real
     return sphere;
 }
 
-/// Contacts of a sphere with a posed mesh, of which what lies below node `start` of its tree can be met; usually the
-/// root. Returns their number; if that exceeds max_contacts, what is written is
+/// Contacts of a sphere with a posed mesh, of which what lies below these nodes of its tree, in its order, can be met;
+/// the root is enough. Returns their number; if that exceeds max_contacts, what is written is
 /// useless: call again with more room. *is_inside: the centre is inside the mesh's solid.
-SCREE_FN int32_t scree_sphere_mesh_contacts(const scree_shape_view *mesh, scree_sphere_on_mesh sphere, int32_t start,
-                                            scree_sphere_contact *contacts, int32_t max_contacts, bool *is_inside)
+SCREE_FN int32_t scree_sphere_mesh_contacts(const scree_shape_view *mesh, scree_sphere_on_mesh sphere,
+                                            const int32_t *nodes, int32_t num_nodes, scree_sphere_contact *contacts,
+                                            int32_t max_contacts, bool *is_inside)
 {
     const scree_real squared_radius = sphere.radius * sphere.radius;
     int32_t num = 0;
@@ -167,10 +168,14 @@ SCREE_FN int32_t scree_sphere_mesh_contacts(const scree_shape_view *mesh, scree_
     deepest.normal = scree_vec3_zero();
     deepest.height = 0;
     deepest.rank = 0;
-    int32_t k = start;
-    const int32_t end = start != SCREE_LBVH_END ? mesh->tree.nodes[start].escape : SCREE_LBVH_END;
-    while (k != end)
+    int32_t n = 0, k = SCREE_LBVH_END, end = SCREE_LBVH_END;
+    while (k != end || n < num_nodes)
     {
+        if (k == end)
+        {
+            k = nodes[n++];
+            end = mesh->tree.nodes[k].escape;
+        }
         const scree_lbvh_node *node = mesh->tree.nodes + k;
         const bool is_met = scree_box_distance_squared(node->box, sphere.centre) < squared_radius;
         k = is_met && node->first_child >= 0 ? node->first_child : node->escape;

@@ -9,6 +9,7 @@
 SCREE_DECLARE_LAUNCH(scree_place_spheres) ///< over bodies
 SCREE_DECLARE_LAUNCH(scree_sphere_sphere_count)
 SCREE_DECLARE_LAUNCH(scree_sphere_sphere_write)
+SCREE_DECLARE_LAUNCH(scree_sphere_mesh_near)
 SCREE_DECLARE_LAUNCH(scree_sphere_mesh_count)
 SCREE_DECLARE_LAUNCH(scree_sphere_mesh_write)
 SCREE_DECLARE_LAUNCH(scree_clump_clump_count)

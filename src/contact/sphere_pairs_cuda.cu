@@ -4,6 +4,7 @@
 SCREE_DEFINE_LAUNCH(scree_place_spheres)
 SCREE_DEFINE_LAUNCH(scree_sphere_sphere_count)
 SCREE_DEFINE_LAUNCH(scree_sphere_sphere_write)
+SCREE_DEFINE_LAUNCH_WIDE(scree_sphere_mesh_near)
 SCREE_DEFINE_LAUNCH_WIDE(scree_sphere_mesh_count)
 SCREE_DEFINE_LAUNCH(scree_sphere_mesh_write)
 SCREE_DEFINE_LAUNCH(scree_clump_clump_count)

@@ -28,6 +28,18 @@ SCREE_FN void scree_place_spheres_at(scree_place_spheres_args a, int64_t i)
     a.spheres[i].radius = shape->kind == SCREE_KIND_SPHERE ? shape->bounding_radius * a.pose[i].scale : 0;
 }
 
+/// Nodes of a mesh's tree below which lies all that a sphere or clump can meet until the next search of pairs, in the
+/// order of the tree: the leaves of the triangles if there are few.
+enum
+{
+    SCREE_NEAR_NODES = 7
+};
+typedef struct scree_near_nodes
+{
+    int32_t num;
+    int32_t node[SCREE_NEAR_NODES];
+} scree_near_nodes;
+
 typedef struct scree_sphere_pairs_args
 {
     const scree_sphere *spheres;       ///< (num_bodies) of pairs of two spheres
@@ -39,7 +51,7 @@ typedef struct scree_sphere_pairs_args
     scree_contact_list list;           ///< first pass: number of contacts to first_of_pair; second: geometry written
 
     // spheres and clumps on meshes
-    int32_t *start;              ///< (num) of a single sphere: see scree_start_on_mesh(); 0 after a search of pairs
+    scree_near_nodes *near;      ///< (num) found after a search of pairs
     scree_real reach;            ///< [m] two bodies come closer by no more than this until the next one; 0: not known
     scree_sphere_contact *found; ///< (num, max_found)
     int32_t max_found;
@@ -48,6 +60,7 @@ typedef struct scree_sphere_pairs_args
 
 typedef scree_sphere_pairs_args scree_sphere_sphere_count_args;
 typedef scree_sphere_pairs_args scree_sphere_sphere_write_args;
+typedef scree_sphere_pairs_args scree_sphere_mesh_near_args;
 typedef scree_sphere_pairs_args scree_sphere_mesh_count_args;
 typedef scree_sphere_pairs_args scree_sphere_mesh_write_args;
 typedef scree_sphere_pairs_args scree_clump_clump_count_args;
@@ -135,20 +148,36 @@ SCREE_FN scree_sphere scree_turned_sphere(const scree_shape_view *shape, const s
     return sphere;
 }
 
-/// Where to start in the tree of a mesh: above all that a sphere can meet until the next search of pairs. Found once
-/// after it and kept, two more than the node.
-SCREE_FN int32_t scree_start_on_mesh(int32_t *start, const scree_shape_view *mesh, scree_sphere_on_mesh sphere,
-                                     scree_real reach)
+/// What a sphere can meet of the mesh until it has come closer by `reach`.
+SCREE_FN void scree_find_near_nodes(scree_near_nodes *near, const scree_shape_view *mesh, scree_sphere_on_mesh sphere,
+                                    scree_real reach)
 {
-    if (*start == 0)
+    const scree_vec3 c = sphere.centre;
+    scree_real radius = sphere.radius + reach / sphere.scale;
+    // the roundings of both ways to the mesh's frame, at both times
+    radius += 64 * SCREE_REAL_EPSILON * (radius + scree_abs(c.x) + scree_abs(c.y) + scree_abs(c.z));
+    near->num = scree_leaves_within(mesh, c, radius, near->node, SCREE_NEAR_NODES);
+    if (near->num <= SCREE_NEAR_NODES) return;
+    near->num = 1;
+    near->node[0] = scree_lbvh_node_around(mesh->tree, c, radius);
+}
+
+/// After a search of pairs. A clump stays within its bounding sphere, however it turns.
+SCREE_FN void scree_sphere_mesh_near_at(scree_sphere_mesh_near_args a, int64_t b)
+{
+    const scree_candidate_pair pair = a.pairs[a.batch[b]];
+    const bool is_first = a.shapes[a.shape[pair.i]].kind != SCREE_KIND_MESH;
+    const int32_t body = is_first ? pair.i : pair.j, mesh = is_first ? pair.j : pair.i;
+    const scree_shape_view *shape = a.shapes + a.shape[mesh];
+    if (a.reach > 0)
     {
-        const scree_vec3 c = sphere.centre;
-        const scree_real radius = sphere.radius + reach / sphere.scale;
-        // the roundings of both ways to the mesh's frame, at both times
-        const scree_real margin = 64 * SCREE_REAL_EPSILON * (radius + scree_abs(c.x) + scree_abs(c.y) + scree_abs(c.z));
-        *start = scree_lbvh_node_around(mesh->tree, c, radius + margin) + 2;
+        const scree_real radius = a.shapes[a.shape[body]].bounding_radius * a.pose[body].scale;
+        const scree_sphere_on_mesh sphere = scree_sphere_to_mesh(a.pose[body].position, radius, a.pose + mesh);
+        scree_find_near_nodes(a.near + b, shape, sphere, a.reach);
+        return;
     }
-    return *start - 2;
+    a.near[b].num = 1;
+    a.near[b].node[0] = shape->tree.root;
 }
 
 SCREE_FN void scree_sphere_mesh_count_at(scree_sphere_mesh_count_args a, int64_t b)
@@ -160,18 +189,17 @@ SCREE_FN void scree_sphere_mesh_count_at(scree_sphere_mesh_count_args a, int64_t
     int64_t *num = a.list.first_of_pair + a.batch[b];
     bool is_any_inside = false;
     *num = 0;
+    if (a.near[b].num == 0) return;
     for (int32_t k = 0; k < a.shapes[a.shape[body]].num_spheres; ++k)
     {
         const scree_sphere sphere = scree_turned_sphere(a.shapes + a.shape[body], a.pose + body, k);
         const int32_t first = *num < a.max_found ? (int32_t)*num : a.max_found;
         scree_sphere_contact *found = a.found + b * a.max_found + first;
         bool is_inside;
-        const scree_shape_view *shape = a.shapes + a.shape[mesh];
         const scree_sphere_on_mesh on_mesh =
             scree_sphere_to_mesh(scree_vec3_add(a.pose[body].position, sphere.centre), sphere.radius, a.pose + mesh);
-        const bool is_single = a.reach > 0 && a.shapes[a.shape[body]].num_spheres == 1;
-        const int32_t start = is_single ? scree_start_on_mesh(a.start + b, shape, on_mesh, a.reach) : shape->tree.root;
-        const int32_t added = scree_sphere_mesh_contacts(shape, on_mesh, start, found, a.max_found - first, &is_inside);
+        const int32_t added = scree_sphere_mesh_contacts(a.shapes + a.shape[mesh], on_mesh, a.near[b].node,
+                                                         a.near[b].num, found, a.max_found - first, &is_inside);
         for (int32_t f = 0; f < added && first + f < a.max_found; ++f) found[f].sphere = k;
         *num += added;
         is_any_inside |= is_inside;

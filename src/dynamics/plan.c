@@ -3,7 +3,7 @@
 #include "dynamics/plan.h"
 
 #include "contact/mesh_pairs_kernel.h"
-#include "contact/sphere_contact_kernel.h"
+#include "contact/sphere_pairs_kernel.h"
 #include "dynamics/on_device.h"
 #include "dynamics/step_buffers.h"
 
@@ -27,7 +27,7 @@ scree_plan_bytes scree_simulation_plan_bytes(const scree_simulation *simulation)
                  2 * sizeof(int64_t);
     if (has_meshes) bytes.mesh_pair = 2 * sizeof(scree_pair_memory) + 2 * sizeof(int32_t);
     if ((has_spheres || has[SCREE_KIND_CLUMP]) && (has_meshes || s->num_walls > 0))
-        bytes.sphere_mesh_pair = 3 * sizeof(scree_sphere_contact);
+        bytes.sphere_mesh_pair = sizeof(scree_near_nodes) + 3 * sizeof(scree_sphere_contact);
     bytes.contact = (size_t)scree_contact_list_bytes(&s->contacts) + sizeof(int64_t) + 1;
     if (has_meshes)
         bytes.contact += sizeof(scree_kept_overlap) + (s->contacts.has_no_levers ? 0 : sizeof(scree_kept_lever));

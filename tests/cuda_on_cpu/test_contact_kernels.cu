@@ -10,6 +10,7 @@ SCREE_DECLARE_LAUNCH_CUDA(scree_overlap_patches)
 SCREE_DECLARE_LAUNCH_CUDA(scree_place_spheres)
 SCREE_DECLARE_LAUNCH_CUDA(scree_sphere_sphere_count)
 SCREE_DECLARE_LAUNCH_CUDA(scree_sphere_sphere_write)
+SCREE_DECLARE_LAUNCH_CUDA(scree_sphere_mesh_near)
 SCREE_DECLARE_LAUNCH_CUDA(scree_sphere_mesh_count)
 SCREE_DECLARE_LAUNCH_CUDA(scree_sphere_mesh_write)
 SCREE_DECLARE_LAUNCH_CUDA(scree_clump_clump_count)
@@ -230,17 +231,21 @@ static void find_spheres_on(side &where, scree_pair_kind kind)
     args.pairs = where.copy(s->broad_phase.pairs, num_pairs);
     args.batch = where.copy(batch.data(), num);
     args.list.first_of_pair = where.zeros<int64_t>(num_pairs + 1);
-    args.start = where.zeros<int32_t>(num);
+    args.near = where.zeros<scree_near_nodes>(num);
     args.reach = 2 * b->skin;
     args.max_found = 8;
     args.found = where.make<scree_sphere_contact>(num * args.max_found);
     args.tally = where.zeros<scree_pair_tally>(1);
     if (kind == SCREE_PAIR_SPHERE_SPHERE) LAUNCH_ON(where, scree_sphere_sphere_count, args, num);
     else if (kind == SCREE_PAIR_CLUMP_CLUMP) LAUNCH_ON(where, scree_clump_clump_count, args, num);
-    else LAUNCH_ON(where, scree_sphere_mesh_count, args, num);
+    else
+    {
+        LAUNCH_ON(where, scree_sphere_mesh_near, args, num);
+        LAUNCH_ON(where, scree_sphere_mesh_count, args, num);
+    }
     where.keep(args.list.first_of_pair, num_pairs);
     where.keep(args.tally, 1);
-    where.keep(args.start, num);
+    where.keep(args.near, num);
 
     std::vector<int64_t> first(1, 0);
     for (const int64_t num_contacts : where.read(args.list.first_of_pair, num_pairs))

@@ -15,7 +15,7 @@ static int32_t touch(const scree_shape *shape, double x, double y, double z, dou
 {
     const scree_vec3 centre = scree_vec3_make((scree_real)x, (scree_real)y, (scree_real)z);
     return scree_sphere_mesh_contacts(&shape->view, scree_sphere_to_mesh(centre, (scree_real)radius, &at_origin),
-                                      shape->view.tree.root, contacts, 8, is_inside);
+                                      &shape->view.tree.root, 1, contacts, 8, is_inside);
 }
 
 static void make_shape(scree_shape *shape, scree_mesh *mesh)
@@ -246,7 +246,7 @@ static void test_posed_mesh(void)
         scree_sphere_contact c[3];
         bool is_inside;
         SCREE_CHECK_INT(scree_sphere_mesh_contacts(&box.view, scree_sphere_to_mesh(centre, (scree_real)0.1, &pose),
-                                                   box.view.tree.root, c, 3, &is_inside),
+                                                   &box.view.tree.root, 1, c, 3, &is_inside),
                         1);
         check_contact(c[0], (double)n.x, (double)n.y, (double)n.z, 0.01);
     }
@@ -265,43 +265,86 @@ static scree_vec3 random_direction(uint64_t *state)
     return scree_vec3_scale(v, 1 / scree_vec3_length(v));
 }
 
-/// A sphere that starts below the node found at one place has the contacts of one that starts at the root, wherever it
-/// has gone within its reach and the mesh within its.
-static void test_start_in_tree(void)
+/// Which triangles are near a sphere is found at one place; when it and the mesh have moved within their reach it has
+/// the contacts on these that it has on all of them. Returns how many triangles are near; one more than are listed:
+/// many.
+static int32_t check_near(const scree_shape *shape, scree_pose pose, scree_vec3 centre, scree_real radius,
+                          uint64_t *state, int *num_touching)
+{
+    const scree_real reach = radius / 3;
+    const scree_vec3 way = random_direction(state);
+    scree_near_nodes near;
+    scree_find_near_nodes(&near, &shape->view, scree_sphere_to_mesh(centre, radius, &pose), reach);
+    const bool is_list = near.num != 1 || shape->view.tree.nodes[near.node[0]].first_child < 0;
+
+    centre = scree_vec3_add_scaled(centre, way, reach / 2);
+    pose.position = scree_vec3_add_scaled(pose.position, way, -reach / 2);
+    const scree_sphere_on_mesh sphere = scree_sphere_to_mesh(centre, radius, &pose);
+    scree_sphere_contact from_root[8] = {{{0, 0, 0}, 0, 0, 0, 0}}, from_near[8] = {{{0, 0, 0}, 0, 0, 0, 0}};
+    bool is_inside[2];
+    const int32_t num =
+        scree_sphere_mesh_contacts(&shape->view, sphere, &shape->view.tree.root, 1, from_root, 8, is_inside);
+    SCREE_CHECK_INT(scree_sphere_mesh_contacts(&shape->view, sphere, near.node, near.num, from_near, 8, is_inside + 1),
+                    num);
+    SCREE_CHECK(memcmp(from_root, from_near, sizeof from_root) == 0 && is_inside[0] == is_inside[1]);
+    *num_touching += num > 0;
+    return is_list ? near.num : SCREE_NEAR_NODES + 1;
+}
+
+static void check_near_counts(const char *where, const int num[SCREE_NEAR_NODES + 2], int num_touching)
+{
+    printf("%s: ", where);
+    for (int k = 0; k < SCREE_NEAR_NODES + 2; ++k) printf("%d ", num[k]);
+    printf("have 0, 1, ... triangles near, the last ones more; %d touch\n", num_touching);
+    for (int k = 0; k < SCREE_NEAR_NODES + 2; k += SCREE_NEAR_NODES + 1) SCREE_CHECK(num[k] > 20);
+    SCREE_CHECK(num[1] > 20 && num[2] > 20 && num_touching > 500);
+}
+
+/// About a ball of triangles that is three times as large as it is stored.
+static void test_near_a_ball(void)
 {
     scree_mesh mesh;
     SCREE_CHECK_INT(scree_generate_sphere(&mesh, 0.5, 320), SCREE_OK);
     scree_shape shape;
     make_shape(&shape, &mesh);
     uint64_t state = 5;
-    int num_below = 0, num_without = 0, num_touching = 0;
-    for (int k = 0; k < 2000; ++k)
+    int num[SCREE_NEAR_NODES + 2] = {0}, num_touching = 0;
+    for (int k = 0; k < 4000; ++k)
     {
-        // spheres about a sphere of radius 1/2 that is three times as large, some of them too far away
-        const scree_real radius = (scree_real)(0.05 + 0.3 * scree_test_random(&state)), reach = (scree_real)0.1;
-        scree_pose pose = {{2, 0, 1}, {1, 0, 0, 0}, 3};
-        const scree_vec3 direction = random_direction(&state), way = random_direction(&state);
-        const double distance = 1.5 + (0.15 + 1.4 * (double)radius) * scree_test_random(&state);
-        scree_vec3 centre = scree_vec3_add_scaled(pose.position, direction, (scree_real)distance);
-        int32_t start = 0;
-        scree_start_on_mesh(&start, &shape.view, scree_sphere_to_mesh(centre, radius, &pose), reach);
-        num_below += start - 2 != shape.view.tree.root && start - 2 != SCREE_LBVH_END;
-        num_without += start - 2 == SCREE_LBVH_END;
-
-        centre = scree_vec3_add_scaled(centre, way, reach / 2);
-        pose.position = scree_vec3_add_scaled(pose.position, way, -reach / 2);
-        const scree_sphere_on_mesh sphere = scree_sphere_to_mesh(centre, radius, &pose);
-        scree_sphere_contact from_root[8] = {{{0, 0, 0}, 0, 0, 0, 0}}, from_start[8] = {{{0, 0, 0}, 0, 0, 0, 0}};
-        bool is_inside[2];
-        const int32_t num =
-            scree_sphere_mesh_contacts(&shape.view, sphere, shape.view.tree.root, from_root, 8, is_inside);
-        const int32_t kept = scree_start_on_mesh(&start, &shape.view, sphere, reach);
-        SCREE_CHECK_INT(scree_sphere_mesh_contacts(&shape.view, sphere, kept, from_start, 8, is_inside + 1), num);
-        SCREE_CHECK(memcmp(from_root, from_start, sizeof from_root) == 0 && is_inside[0] == is_inside[1]);
-        num_touching += num > 0;
+        const scree_pose pose = {{2, 0, 1}, {1, 0, 0, 0}, 3};
+        const scree_real radius = (scree_real)(0.02 + 0.3 * scree_test_random(&state) * scree_test_random(&state));
+        const double distance = 1.5 + 1.5 * (double)radius * (2 * scree_test_random(&state) - 0.9);
+        const scree_vec3 centre = scree_vec3_add_scaled(pose.position, random_direction(&state), (scree_real)distance);
+        ++num[check_near(&shape, pose, centre, radius, &state, &num_touching)];
     }
-    SCREE_CHECK(num_below > 500 && num_without > 20 && num_touching > 500);
-    printf("%d below the root, %d nowhere, %d touching\n", num_below, num_without, num_touching);
+    check_near_counts("about a ball", num, num_touching);
+    scree_shape_destroy(&shape);
+}
+
+/// On a disc of slivers from its centre to the rim, turned and moved: where they are thin, what is found of them has
+/// lost digits.
+static void test_near_slivers(void)
+{
+    const scree_profile_point profile[] = {{0, -0.1}, {1, -0.1}, {1, 0}, {0, 0}};
+    scree_mesh mesh;
+    SCREE_CHECK_INT(scree_generate_turned(&mesh, profile, 4, 2000), SCREE_OK);
+    scree_shape shape;
+    make_shape(&shape, &mesh);
+    const scree_pose pose = {{1, 2, 3}, {(scree_real)0.8, 0, (scree_real)0.6, 0}, 1};
+    const scree_mat3 rotation = scree_mat3_from_quat(pose.orientation);
+    uint64_t state = 6;
+    int num[SCREE_NEAR_NODES + 2] = {0}, num_touching = 0;
+    for (int k = 0; k < 4000; ++k)
+    {
+        const scree_real radius = (scree_real)(0.001 + 0.004 * scree_test_random(&state));
+        const double from_axis = scree_test_random(&state), x = 2 * scree_test_random(&state) - 1;
+        const double y = (k % 2 ? 1 : -1) * sqrt(1 - x * x), height = (double)radius * 1.5 * scree_test_random(&state);
+        const scree_vec3 place =
+            scree_vec3_make((scree_real)(from_axis * x), (scree_real)(from_axis * y), (scree_real)height);
+        const scree_vec3 centre = scree_vec3_add(pose.position, scree_mat3_apply(rotation, place));
+        ++num[check_near(&shape, pose, centre, radius, &state, &num_touching)];
+    }
+    check_near_counts("on slivers", num, num_touching);
     scree_shape_destroy(&shape);
 }
 
@@ -314,6 +357,7 @@ int main(void)
     SCREE_RUN(test_distance_and_side);
     SCREE_RUN(test_grooves_are_crossed_smoothly);
     SCREE_RUN(test_posed_mesh);
-    SCREE_RUN(test_start_in_tree);
+    SCREE_RUN(test_near_a_ball);
+    SCREE_RUN(test_near_slivers);
     return SCREE_TEST_END();
 }

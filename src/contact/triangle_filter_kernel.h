@@ -99,9 +99,13 @@ SCREE_FN int32_t scree_filter_vertex(scree_overlap_body *body, const scree_posed
     return added;
 }
 
-/// A region in the body frame of a shape, from outside: what the nodes of its tree are held against.
-SCREE_FN scree_filter_region scree_filter_in_body(const scree_posed_shape *posed, const scree_filter_region *region,
-                                                  scree_box body_box)
+/// From a column on that is so many times narrower than the body, its sides are worth being looked at.
+#define SCREE_NARROW_COLUMN 6
+
+/// A region from outside, for the nodes of the tree of a shape, in its body frame: the box of its column, the
+/// half-space, and if the column is narrow its four sides: long and oblique, it fills little of its box.
+SCREE_FN_APART void scree_filter_query(const scree_posed_shape *posed, const scree_filter_region *region,
+                                       scree_box body_box, scree_wide_query *query)
 {
     // the one-sided bound in z goes as far as the body itself
     scree_box box = region->box;
@@ -123,15 +127,19 @@ SCREE_FN scree_filter_region scree_filter_in_body(const scree_posed_shape *posed
     const scree_vec3 wide = scree_vec3_add(half, scree_vec3_make(rounding, rounding, rounding));
     const scree_vec3 turned_middle = scree_vec3_scale(scree_mat3_apply(back, middle), 1 / scale2);
     const scree_vec3 turned_half = scree_vec3_scale(scree_turned_extents(&back, wide), 1 / scale2);
-    scree_filter_region turned;
-    turned.box.lower = scree_vec3_sub(turned_middle, turned_half);
-    turned.box.upper = scree_vec3_add(turned_middle, turned_half);
-    turned.direction = scree_mat3_apply_transposed(*m, region->direction);
+    const scree_box turned = {scree_vec3_sub(turned_middle, turned_half), scree_vec3_add(turned_middle, turned_half)};
     const scree_vec3 d = region->direction;
-    turned.reach = region->reach - scree_vec3_dot(d, posed->offset) +
-                   rounding * (scree_abs(d.x) + scree_abs(d.y) + scree_abs(d.z));
-    turned.is_of_a = region->is_of_a;
-    return turned;
+    const scree_real reach = region->reach - scree_vec3_dot(d, posed->offset) +
+                             rounding * (scree_abs(d.x) + scree_abs(d.y) + scree_abs(d.z));
+    const scree_real size = scree_box_reach(posed->shape->box);
+    scree_wide_query_set(query, turned, scree_wide_half_space_make(scree_mat3_apply_transposed(*m, d), reach, size));
+    const scree_vec3 body_half = scree_box_half(body_box);
+    if (scree_max(body_half.x, body_half.y) < SCREE_NARROW_COLUMN * scree_max(half.x, half.y)) return;
+    const scree_vec3 x = m->row[0], y = m->row[1];
+    scree_wide_query_add_side(query, scree_wide_half_space_make(x, middle.x + wide.x, size));
+    scree_wide_query_add_side(query, scree_wide_half_space_make(scree_vec3_negate(x), wide.x - middle.x, size));
+    scree_wide_query_add_side(query, scree_wide_half_space_make(y, middle.y + wide.y, size));
+    scree_wide_query_add_side(query, scree_wide_half_space_make(scree_vec3_negate(y), wide.y - middle.y, size));
 }
 
 /// Keeps triangles through the tree that reach into the half-space and may meet the box; `body_box` is the box of the
@@ -139,17 +147,15 @@ SCREE_FN scree_filter_region scree_filter_in_body(const scree_posed_shape *posed
 SCREE_FN_APART bool scree_filter_tree(scree_overlap_body *body, const scree_posed_shape *posed,
                                       const scree_filter_region *region, scree_box body_box, scree_wide_walk *walk)
 {
-    const scree_filter_region turned = scree_filter_in_body(posed, region, body_box);
     const scree_shape_view *shape = posed->shape;
-    const scree_wide_query query =
-        scree_wide_query_make(turned.box, turned.direction, turned.reach, scree_box_reach(shape->box));
-    scree_wide_walk_start(&shape->wide_tree, &query, walk);
+    scree_filter_query(posed, region, body_box, &walk->query);
+    scree_wide_walk_start(&shape->wide_tree, walk);
     body->num_vertices = 0;
     int32_t num = 0;
     for (;;)
     {
         uint32_t found;
-        const int32_t node = scree_wide_walk_next(&shape->wide_tree, &query, walk, &found);
+        const int32_t node = scree_wide_walk_next(&shape->wide_tree, walk, &found);
         body->num_triangles = num;
         if (node < 0) return true;
         if (num + SCREE_WIDE_CHILDREN > body->max_triangles ||

@@ -215,9 +215,106 @@ static void test_body_with_itself(void)
     for (int k = 0; k < NUM_SHAPES; ++k) scree_shape_destroy(shapes + k);
 }
 
+enum
+{
+    CELLS = 24, ///< along each edge of the fine box
+    CORNERS = CELLS + 1
+};
+
+/// A box of this size whose faces are cut into CELLS x CELLS x 2 triangles.
+static scree_mesh fine_box(const double size[3])
+{
+    static double vertices[CORNERS * CORNERS * CORNERS][3];
+    static int32_t triangles[12 * CELLS * CELLS][3], id[CORNERS][CORNERS][CORNERS];
+    int32_t num_vertices = 0, num_triangles = 0;
+    for (int i = 0; i < CORNERS; ++i)
+        for (int j = 0; j < CORNERS; ++j)
+            for (int k = 0; k < CORNERS; ++k)
+            {
+                const int at[3] = {i, j, k};
+                bool is_on_face = false;
+                for (int c = 0; c < 3; ++c) is_on_face |= at[c] == 0 || at[c] == CELLS;
+                if (!is_on_face) continue;
+                for (int c = 0; c < 3; ++c) vertices[num_vertices][c] = size[c] * ((double)at[c] / CELLS - 0.5);
+                id[i][j][k] = num_vertices++;
+            }
+    for (int face = 0; face < 6; ++face)
+        for (int u = 0; u < CELLS; ++u)
+            for (int v = 0; v < CELLS; ++v)
+            {
+                int32_t corner[4];
+                for (int n = 0; n < 4; ++n)
+                {
+                    int at[3];
+                    at[face % 3] = face < 3 ? 0 : CELLS;
+                    at[(face + 1) % 3] = u + (n == 1 || n == 2);
+                    at[(face + 2) % 3] = v + (n >= 2);
+                    corner[n] = id[at[0]][at[1]][at[2]];
+                }
+                const int way = face < 3 ? 1 : 0; // outwards
+                const int32_t first[3] = {corner[0], corner[1 + way], corner[2 - way]};
+                const int32_t second[3] = {corner[0], corner[2 + way], corner[3 - way]};
+                memcpy(triangles[num_triangles++], first, sizeof first);
+                memcpy(triangles[num_triangles++], second, sizeof second);
+            }
+    return scree_test_mesh(vertices, num_vertices, triangles, num_triangles);
+}
+
+/// On a wall of thousands of triangles a small body overlaps as much as on the same wall of twelve.
+static void test_small_body_on_fine_wall(void)
+{
+    scree_shape shapes[NUM_SHAPES], walls[2];
+    make_shapes(shapes);
+    const double size[3] = {2, 1.4, 0.7};
+    for (int k = 0; k < 2; ++k)
+    {
+        scree_mesh mesh = {0};
+        if (k == 0) SCREE_CHECK_INT(scree_generate_box(&mesh, size), SCREE_OK);
+        else mesh = fine_box(size);
+        SCREE_CHECK_INT(scree_shape_create(walls + k, &mesh, SCREE_FRAME_SOURCE), SCREE_OK);
+        scree_mesh_destroy(&mesh);
+    }
+    scree_overlap_workspace *workspace = scree_overlap_workspace_create();
+    const uint64_t seed = 33;
+    uint64_t state = seed;
+    int num_touching = 0, num_deep = 0;
+    for (int n = 0; n < 600; ++n)
+    {
+        const double scale = 0.04 * pow(5, scree_test_random(&state));
+        body a = random_body(shapes, scale, &state);
+        const body coarse = {walls, {{0, 0, 0}, scree_test_random_rotation(&state), 1}};
+        body fine = coarse;
+        fine.shape = walls + 1;
+        // about a place on one of the faces
+        const int face = (int)(scree_test_random_bits(&state) % 6);
+        double place[3];
+        for (int c = 0; c < 3; ++c) place[c] = size[c] * (scree_test_random(&state) - 0.5);
+        place[face % 3] = (face < 3 ? -0.5 : 0.5) * size[face % 3];
+        const scree_vec3 on_face = scree_vec3_make((scree_real)place[0], (scree_real)place[1], (scree_real)place[2]);
+        a.pose.position =
+            scree_vec3_add_scaled(scree_mat3_apply(scree_mat3_from_quat(coarse.pose.orientation), on_face),
+                                  random_direction(&state), (scree_real)(radius_of(&a) * scree_test_random(&state)));
+        const int num_failed = scree_test_num_failed;
+        const double share = check_pair(&a, &fine, &state, workspace);
+        SCREE_CHECK_CLOSE(share * volume_of(&a), overlap(&a, &coarse, SCREE_OVERLAP_FILTERED, workspace),
+                          tolerance(&a, &coarse));
+        num_touching += share > 0;
+        num_deep += share > 0.1;
+        if (scree_test_num_failed == num_failed) continue;
+        printf("seed %llu, pair %d\n", (unsigned long long)seed, n);
+        print_body("A", &a, shapes);
+    }
+    printf("%d of 600 bodies overlap the wall, %d by more than a tenth\n", num_touching, num_deep);
+    SCREE_CHECK(num_touching > 400 && num_deep > 200);
+    scree_overlap_workspace_destroy(workspace);
+    for (int k = 0; k < NUM_SHAPES; ++k) scree_shape_destroy(shapes + k);
+    for (int k = 0; k < 2; ++k) scree_shape_destroy(walls + k);
+}
+
 int main(void)
 {
     SCREE_RUN(test_pairs);
     SCREE_RUN(test_body_with_itself);
+    SCREE_RUN(test_small_body_on_fine_wall);
     return SCREE_TEST_END();
 }

@@ -5,14 +5,21 @@
 #include "bvh_tools.h"
 #include "harness.h"
 
-/// A query in full precision: boxes that overlap `box` and reach into direction . x <= reach.
+/// direction . x <= reach
+typedef struct brute_half_space
+{
+    scree_vec3 direction;
+    double reach;
+    double direction1; ///< sum of the components' magnitudes
+} brute_half_space;
+
+/// A query in full precision: boxes that overlap `box` and reach into all half-spaces, of which the first is no side.
 typedef struct brute_query
 {
     scree_box box;
-    scree_vec3 direction;
-    double reach;
-    double size;       ///< bounds every coordinate of the boxes
-    double direction1; ///< sum of the components' magnitudes
+    brute_half_space half_spaces[1 + SCREE_WIDE_SIDES];
+    int32_t num_half_spaces;
+    double size; ///< bounds every coordinate of the boxes
 } brute_query;
 
 /// The least of direction . x in a box.
@@ -23,15 +30,29 @@ static double least_along(scree_vec3 direction, scree_box box)
            (double)(direction.z * (direction.z > 0 ? box.lower.z : box.upper.z));
 }
 
-/// Does a box meet the query if both box and half-space are widened?
-static bool meets(const brute_query *query, scree_box box, double widened, double deepened)
+/// How much deeper a half-space may be taken: by 8 eps on purpose, 1.5 eps for its bounds, 2 for direction, products
+/// and sums, and 1.5 for its reach.
+static double deepened(const brute_half_space *half_space, double size)
+{
+    const double epsilon = (double)FLT_EPSILON;
+    return 12 * epsilon * half_space->direction1 * size + 2 * epsilon * fabs(half_space->reach) + 8 * (double)FLT_MIN;
+}
+
+/// Does a box meet the query, or the query with its box widened and its half-spaces deepened?
+static bool meets(const brute_query *query, scree_box box, double widened, bool is_deepened)
 {
     const double lower[3] = {box.lower.x, box.lower.y, box.lower.z}, upper[3] = {box.upper.x, box.upper.y, box.upper.z};
     const double from[3] = {query->box.lower.x, query->box.lower.y, query->box.lower.z};
     const double to[3] = {query->box.upper.x, query->box.upper.y, query->box.upper.z};
     for (int k = 0; k < 3; ++k)
         if (lower[k] > to[k] + widened || upper[k] < from[k] - widened) return false;
-    return least_along(query->direction, box) <= query->reach + deepened;
+    for (int32_t k = 0; k < query->num_half_spaces; ++k)
+    {
+        const brute_half_space *half_space = query->half_spaces + k;
+        const double more = is_deepened ? deepened(half_space, query->size) : 0;
+        if (!(least_along(half_space->direction, box) <= half_space->reach + more)) return false;
+    }
+    return true;
 }
 
 static double size_of(const scree_box *boxes, int32_t num)
@@ -47,22 +68,32 @@ static double size_of(const scree_box *boxes, int32_t num)
     return size;
 }
 
-/// A box and a half-space about the middle of the boxes; some directions along an axis, some without length.
+/// About the middle of the boxes; some directions along an axis, some without length.
+static brute_half_space random_half_space(double extent, uint64_t *state)
+{
+    brute_half_space half_space = {.direction1 = 0};
+    double d[3];
+    const int zeros = (int)(scree_test_random_bits(state) % 8);
+    for (int k = 0; k < 3; ++k)
+    {
+        d[k] = zeros >> k & 1 ? 0 : 2 * scree_test_random(state) - 1;
+        half_space.direction1 += fabs(d[k]);
+    }
+    half_space.direction = scree_vec3_make((scree_real)d[0], (scree_real)d[1], (scree_real)d[2]);
+    half_space.reach = (2 * scree_test_random(state) - 1) * half_space.direction1 * extent / 2;
+    return half_space;
+}
+
+/// A box and half-spaces, every third time with sides.
 static brute_query random_query(const scree_test_boxes *kind, double size, uint64_t *state)
 {
     brute_query query;
     const scree_test_boxes larger = {kind->extent, 0.05 * kind->extent, kind->extent, 5, kind->grid};
     query.box = scree_test_box(&larger, state);
-    double d[3];
-    const int zeros = (int)(scree_test_random_bits(state) % 8);
-    query.direction1 = 0;
-    for (int k = 0; k < 3; ++k)
-    {
-        d[k] = zeros >> k & 1 ? 0 : 2 * scree_test_random(state) - 1;
-        query.direction1 += fabs(d[k]);
-    }
-    query.direction = scree_vec3_make((scree_real)d[0], (scree_real)d[1], (scree_real)d[2]);
-    query.reach = (2 * scree_test_random(state) - 1) * query.direction1 * kind->extent / 2;
+    query.num_half_spaces = scree_test_random_bits(state) % 3 == 0 ? 1 + SCREE_WIDE_SIDES : 1;
+    for (int32_t k = 0; k < query.num_half_spaces; ++k) query.half_spaces[k] = random_half_space(kind->extent, state);
+    // sides that leave something between them
+    for (int32_t k = 1; k < query.num_half_spaces; ++k) query.half_spaces[k].reach += kind->extent / 4;
     query.size = size;
     return query;
 }
@@ -70,7 +101,8 @@ static brute_query random_query(const scree_test_boxes *kind, double size, uint6
 /// Moves a query until it only just meets an item: what is rounded the wrong way is missed.
 static void touch(brute_query *query, scree_box item, int way)
 {
-    query->reach = least_along(query->direction, item);
+    for (int32_t k = 0; k < query->num_half_spaces; ++k)
+        query->half_spaces[k].reach = least_along(query->half_spaces[k].direction, item);
     query->box = item;
     if (way == 0) query->box.lower.x = item.upper.x;
     if (way == 1) query->box.upper.x = item.lower.x;
@@ -83,13 +115,17 @@ static void touch(brute_query *query, scree_box item, int way)
 /// Counts how often each item is found; returns the sum.
 static int32_t find(const scree_wide_tree_view *tree, const brute_query *query, int32_t *num_found)
 {
-    const scree_wide_query wide =
-        scree_wide_query_make(query->box, query->direction, (scree_real)query->reach, (scree_real)query->size);
+    scree_wide_half_space half_spaces[1 + SCREE_WIDE_SIDES];
+    for (int32_t k = 0; k < query->num_half_spaces; ++k)
+        half_spaces[k] = scree_wide_half_space_make(query->half_spaces[k].direction,
+                                                    (scree_real)query->half_spaces[k].reach, (scree_real)query->size);
     scree_wide_walk walk;
-    scree_wide_walk_start(tree, &wide, &walk);
+    scree_wide_query_set(&walk.query, query->box, half_spaces[0]);
+    for (int32_t k = 1; k < query->num_half_spaces; ++k) scree_wide_query_add_side(&walk.query, half_spaces[k]);
+    scree_wide_walk_start(tree, &walk);
     int32_t sum = 0;
     uint32_t found;
-    for (int32_t node; (node = scree_wide_walk_next(tree, &wide, &walk, &found)) >= 0;)
+    for (int32_t node; (node = scree_wide_walk_next(tree, &walk, &found)) >= 0;)
     {
         for (int32_t child = 0; child < SCREE_WIDE_CHILDREN; ++child)
         {
@@ -119,20 +155,17 @@ static int64_t check_queries(const scree_wide_tree_view *tree, const scree_box *
         if (num > 0 && n % 2 == 0) touch(&query, boxes[scree_test_random_bits(state) % (uint64_t)num], n / 2 % 6);
         memset(num_found, 0, (size_t)num * sizeof *num_found);
         find(tree, &query, num_found);
-        // bounds of tree and query are each moved by 1.5 eps at most; the half-space by 8 eps on purpose, 1.5 eps for
-        // its bounds, 2 for direction, products and sums, and 1.5 for its reach
-        const double epsilon = (double)FLT_EPSILON, least = 8 * (double)FLT_MIN;
+        // bounds of tree and query are each moved by 1.5 eps at most
         const double to = fmax(size, size_of(&query.box, 1));
-        const double widened = 3 * epsilon * to + least;
-        const double deepened = 12 * epsilon * query.direction1 * size + 2 * epsilon * fabs(query.reach) + least;
+        const double widened = 3 * (double)FLT_EPSILON * to + 8 * (double)FLT_MIN;
         int num_missed = 0, num_twice = 0, num_far = 0;
         for (int32_t i = 0; i < num; ++i)
         {
-            const bool does_meet = meets(&query, boxes[i], 0, 0);
+            const bool does_meet = meets(&query, boxes[i], 0, false);
             num_met += does_meet;
             num_missed += does_meet && num_found[i] == 0;
             num_twice += num_found[i] > 1;
-            num_far += num_found[i] > 0 && !meets(&query, boxes[i], widened, deepened);
+            num_far += num_found[i] > 0 && !meets(&query, boxes[i], widened, true);
         }
         SCREE_CHECK_INT(num_missed, 0);
         SCREE_CHECK_INT(num_twice, 0);
@@ -216,18 +249,19 @@ static void test_whole_space(void)
     const scree_real far = (scree_real)1e3;
     query.box.lower = scree_vec3_make(-far, -far, -far);
     query.box.upper = scree_vec3_make(far, far, far);
-    query.direction = scree_vec3_make(0, 0, 1);
+    query.num_half_spaces = 1;
+    query.half_spaces[0].direction = scree_vec3_make(0, 0, 1);
     int32_t num_found[1000] = {0};
-    query.reach = 1e3;
+    query.half_spaces[0].reach = 1e3;
     SCREE_CHECK_INT(find(&tree.view, &query, num_found), 1000);
     for (int i = 0; i < 1000; ++i) SCREE_CHECK_INT(num_found[i], 1);
-    query.reach = -1e3;
+    query.half_spaces[0].reach = -1e3;
     SCREE_CHECK_INT(find(&tree.view, &query, num_found), 0);
 
     // built again over fewer boxes, the tree forgets the old ones
     SCREE_CHECK_INT(scree_lbvh_build(&lbvh, boxes, 9), SCREE_OK);
     SCREE_CHECK_INT(scree_wide_tree_build(&tree, &lbvh, boxes, 9), SCREE_OK);
-    query.reach = 1e3;
+    query.half_spaces[0].reach = 1e3;
     SCREE_CHECK_INT(find(&tree.view, &query, num_found), 9);
     SCREE_CHECK_INT(scree_wide_tree_build(&tree, &lbvh, boxes, 0), SCREE_OK);
     SCREE_CHECK_INT(find(&tree.view, &query, num_found), 0);
@@ -271,19 +305,19 @@ static void test_corners(void)
     {
         brute_query query = random_query(&kind, size, &state);
         const scree_vec3 touched = corners[scree_test_random_bits(&state) % (3 * NUM)];
-        if (n % 2 == 0) query.reach = (double)scree_vec3_dot(query.direction, touched);
+        brute_half_space *half_space = query.half_spaces;
+        if (n % 2 == 0) half_space->reach = (double)scree_vec3_dot(half_space->direction, touched);
         int32_t num_found[NUM] = {0};
         find(&tree.view, &query, num_found);
-        const double deepened = 12 * (double)FLT_EPSILON * query.direction1 * size;
         for (int i = 0; i < NUM; ++i)
         {
             double least = 1e300;
             for (int c = 0; c < 3; ++c)
-                least = fmin(least, (double)scree_vec3_dot(query.direction, corners[3 * i + c]));
-            const bool does_meet = meets(&query, boxes[i], 0, 1e300) && least <= query.reach;
+                least = fmin(least, (double)scree_vec3_dot(half_space->direction, corners[3 * i + c]));
+            const bool does_meet = meets(&query, boxes[i], 0, false) && least <= half_space->reach;
             num_missed += does_meet && num_found[i] == 0;
-            num_far += num_found[i] > 0 && least > query.reach + deepened + 2 * (double)FLT_EPSILON * fabs(query.reach);
-            num_by_box_only += num_found[i] == 0 && meets(&query, boxes[i], 0, 0);
+            num_far += num_found[i] > 0 && least > half_space->reach + deepened(half_space, size);
+            num_by_box_only += num_found[i] == 0 && meets(&query, boxes[i], 0, false);
         }
     }
     SCREE_CHECK_INT(num_missed, 0);

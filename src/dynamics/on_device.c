@@ -52,14 +52,16 @@ scree_device_memory scree_device_memory_of(const scree_simulation *simulation)
                   num_contacts = simulation->counters.num_contacts;
     memory.num_pairs = num_pairs > BED_PAIRS * num ? num_pairs : BED_PAIRS * num;
     memory.num_contacts = num_contacts > BED_CONTACTS * num ? num_contacts : BED_CONTACTS * num;
-    memory.total =
-        memory.per_particle * num + memory.per_pair * memory.num_pairs + memory.per_contact * memory.num_contacts;
+    memory.shapes = bytes.shapes;
+    memory.total = memory.shapes + memory.per_particle * num + memory.per_pair * memory.num_pairs +
+                   memory.per_contact * memory.num_contacts;
     return memory;
 }
 
 int64_t scree_num_that_fit(const scree_device_memory *memory, int64_t num_particles, int64_t num_free)
 {
-    return (int64_t)((double)num_particles * (double)num_free / (double)memory->total);
+    const double left = (double)(num_free - memory->shapes);
+    return left > 0 ? (int64_t)((double)num_particles * left / (double)(memory->total - memory->shapes)) : 0;
 }
 
 // ---- to the device
@@ -182,12 +184,12 @@ static scree_status take_memory(const scree_simulation *s, scree_device *device,
     scree_report_add(
         report,
         "GPU \"%s\" has %.0f MB of free memory, the scene needs about %.0f MB (%lld particles of %lld "
-        "bytes, %lld candidate pairs of %lld, %lld contacts of %lld): take fewer particles (about %lld would "
-        "fit), another GPU, or run on the CPU",
+        "bytes, %lld candidate pairs of %lld, %lld contacts of %lld, shapes of %.0f MB): take fewer particles (about "
+        "%lld would fit), another GPU, or run on the CPU",
         scree_device_name(device), (double)num_free / 1e6, (double)memory.total / 1e6,
         (long long)s->particles.num_particles, (long long)memory.per_particle, (long long)memory.num_pairs,
         (long long)memory.per_pair, (long long)memory.num_contacts, (long long)memory.per_contact,
-        (long long)scree_num_that_fit(&memory, s->particles.num_particles, num_free));
+        (double)memory.shapes / 1e6, (long long)scree_num_that_fit(&memory, s->particles.num_particles, num_free));
     return SCREE_OUT_OF_MEMORY;
 }
 

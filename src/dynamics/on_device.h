@@ -22,6 +22,7 @@ typedef struct scree_device_memory
 {
     int64_t per_particle, per_pair, per_contact; ///< [bytes]
     int64_t num_pairs, num_contacts;             ///< expected: those of now, or of a dense bed
+    int64_t shapes;                              ///< [bytes] of all of them
     int64_t total;                               ///< [bytes] of these, without the buffers of overlaps
 } scree_device_memory;
 

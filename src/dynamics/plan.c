@@ -6,6 +6,7 @@
 #include "contact/sphere_pairs_kernel.h"
 #include "dynamics/on_device.h"
 #include "dynamics/step_buffers.h"
+#include "polyhedra/shape_copy.h"
 
 #include <stdio.h>
 
@@ -31,6 +32,7 @@ scree_plan_bytes scree_simulation_plan_bytes(const scree_simulation *simulation)
     bytes.contact = (size_t)scree_contact_list_bytes(&s->contacts) + sizeof(int64_t) + 1;
     if (has_meshes)
         bytes.contact += sizeof(scree_kept_overlap) + (s->contacts.has_no_levers ? 0 : sizeof(scree_kept_lever));
+    for (int32_t k = 0; k < 2 * s->num_shapes; ++k) bytes.shapes += scree_shape_view_bytes(s->shape_views + k);
     return bytes;
 }
 
@@ -133,8 +135,9 @@ void scree_simulation_print_plan(const scree_simulation *simulation, void *strea
     print_averages(s, out);
     const double particles = (double)s->particles.num_particles * (double)(bytes.state + bytes.search);
     const double pairs = (double)s->broad_phase.num_pairs * (double)(scree_plan_largest_pair(&bytes) + bytes.contact);
-    fprintf(out, "  memory now about %.3g MB for %lld candidate pairs, all of them as contacts\n",
-            (particles + pairs) / 1e6, (long long)s->broad_phase.num_pairs);
+    fprintf(out,
+            "  memory now about %.3g MB for %lld candidate pairs, all of them as contacts, and %.3g MB for shapes\n",
+            (particles + pairs) / 1e6, (long long)s->broad_phase.num_pairs, (double)bytes.shapes / 1e6);
 }
 
 void scree_simulation_print_device_memory(const scree_simulation *simulation, scree_device *device, void *stream)
@@ -143,11 +146,13 @@ void scree_simulation_print_device_memory(const scree_simulation *simulation, sc
     const double num_free = (double)scree_device_free_memory(device);
     FILE *out = stream;
     fprintf(out,
-            "  on GPU \"%s\": %lld B/particle, %lld B/pair, %lld B/contact; for %lld pairs and %lld contacts, as "
-            "now or\n",
+            "  on GPU \"%s\": %lld B/particle, %lld B/pair, %lld B/contact, %.3g MB for shapes; for %lld pairs and "
+            "%lld\n",
             scree_device_name(device), (long long)memory.per_particle, (long long)memory.per_pair,
-            (long long)memory.per_contact, (long long)memory.num_pairs, (long long)memory.num_contacts);
-    fprintf(out, "    in a dense bed, %.3g MB of %.3g MB free: ", (double)memory.total / 1e6, num_free / 1e6);
+            (long long)memory.per_contact, (double)memory.shapes / 1e6, (long long)memory.num_pairs,
+            (long long)memory.num_contacts);
+    fprintf(out, "    contacts, as now or in a dense bed, %.3g MB of %.3g MB free: ", (double)memory.total / 1e6,
+            num_free / 1e6);
     if ((double)memory.total <= num_free) fprintf(out, "fits\n");
     else
         fprintf(out, "does not fit; about %lld particles would\n",

@@ -5,7 +5,7 @@
 
 #include "dynamics/state.h"
 
-/// Bytes of one item in all arrays that a scene needs, without what they have grown ahead.
+/// Bytes of one item in all arrays that a scene needs, without what they have grown ahead; of all shapes.
 typedef struct scree_plan_bytes
 {
     size_t state;            ///< of a particle
@@ -14,6 +14,7 @@ typedef struct scree_plan_bytes
     size_t mesh_pair;        ///< more for one of two meshes; 0 if there are none
     size_t sphere_mesh_pair; ///< more for a sphere or clump and a mesh; 0 if there are none
     size_t contact;          ///< with the history of the step before
+    int64_t shapes;          ///< of all together: meshes, their trees and tables
 } scree_plan_bytes;
 
 /// Of a pair of the kind that takes the most.

@@ -4,6 +4,34 @@
 _Static_assert(sizeof(scree_shape_view) == 224, "copy the new array, and free it");
 #endif
 
+/// Nodes of the trees of a shape: binary; wide, whose last level has one; and those of its lowest level.
+static int64_t num_nodes(const scree_shape_view *view)
+{
+    return view->tree.num_leaves > 0 ? 2 * (int64_t)view->tree.num_leaves - 1 : 0;
+}
+static int64_t num_wide_nodes(const scree_shape_view *view)
+{
+    const scree_wide_tree_view *wide = &view->wide_tree;
+    return wide->num_levels > 0 ? wide->first_node[wide->num_levels - 1] + 1 : 0;
+}
+static int64_t num_lowest_nodes(const scree_shape_view *view)
+{
+    return (view->wide_tree.num_items + SCREE_WIDE_CHILDREN - 1) / SCREE_WIDE_CHILDREN;
+}
+
+/// Every array of a shape: X(array, items), of `view`.
+#define SCREE_SHAPE_ARRAYS(X)                       \
+    X(vertices, view->num_vertices)                 \
+    X(triangles, view->num_triangles)               \
+    X(neighbours, 3 * (int64_t)view->num_triangles) \
+    X(tree.nodes, num_nodes(view))                  \
+    X(wide_tree.nodes, num_wide_nodes(view))        \
+    X(wide_tree.corners, num_lowest_nodes(view))    \
+    X(wide_tree.items, view->wide_tree.num_items)   \
+    X(support_map, SCREE_SUPPORT_VALUES)            \
+    X(flat_faces, view->num_triangles)              \
+    X(spheres, view->num_spheres)
+
 /// A copy of `num` items at `from` on the device; NULL for NULL, or if memory is out.
 static void *copy(scree_device *device, const void *from, int64_t num, size_t size, bool *is_complete)
 {
@@ -16,32 +44,28 @@ static void *copy(scree_device *device, const void *from, int64_t num, size_t si
 
 scree_status scree_shape_view_copy(scree_device *device, scree_shape_view *to, const scree_shape_view *from)
 {
-    const scree_wide_tree_view *wide = &from->wide_tree;
-    const int64_t num_nodes = from->tree.num_leaves > 0 ? 2 * (int64_t)from->tree.num_leaves - 1 : 0;
-    // the last level has one node
-    const int64_t num_wide = wide->num_levels > 0 ? wide->first_node[wide->num_levels - 1] + 1 : 0;
+    const scree_shape_view *view = from;
     bool is_complete = true;
     *to = *from;
-    to->vertices = copy(device, from->vertices, from->num_vertices, sizeof *from->vertices, &is_complete);
-    to->triangles = copy(device, from->triangles, from->num_triangles, sizeof *from->triangles, &is_complete);
-    to->neighbours =
-        copy(device, from->neighbours, 3 * (int64_t)from->num_triangles, sizeof *from->neighbours, &is_complete);
-    to->tree.nodes = copy(device, from->tree.nodes, num_nodes, sizeof *from->tree.nodes, &is_complete);
-    to->wide_tree.nodes = copy(device, wide->nodes, num_wide, sizeof *wide->nodes, &is_complete);
-    const int64_t num_lowest = (wide->num_items + SCREE_WIDE_CHILDREN - 1) / SCREE_WIDE_CHILDREN;
-    to->wide_tree.corners = copy(device, wide->corners, num_lowest, sizeof *wide->corners, &is_complete);
-    to->wide_tree.items = copy(device, wide->items, wide->num_items, sizeof *wide->items, &is_complete);
-    to->support_map = copy(device, from->support_map, SCREE_SUPPORT_VALUES, sizeof *from->support_map, &is_complete);
-    to->flat_faces = copy(device, from->flat_faces, from->num_triangles, sizeof *from->flat_faces, &is_complete);
-    to->spheres = copy(device, from->spheres, from->num_spheres, sizeof *from->spheres, &is_complete);
+#define SCREE_COPY(array, num) to->array = copy(device, from->array, num, sizeof *from->array, &is_complete);
+    SCREE_SHAPE_ARRAYS(SCREE_COPY)
+#undef SCREE_COPY
     return is_complete ? SCREE_OK : SCREE_OUT_OF_MEMORY;
+}
+
+int64_t scree_shape_view_bytes(const scree_shape_view *view)
+{
+    int64_t num_bytes = 0;
+#define SCREE_ADD(array, num) num_bytes += view->array != NULL ? (num) * (int64_t)sizeof *view->array : 0;
+    SCREE_SHAPE_ARRAYS(SCREE_ADD)
+#undef SCREE_ADD
+    return num_bytes;
 }
 
 void scree_shape_view_destroy(scree_device *device, scree_shape_view *view)
 {
-    const void *const arrays[] = {view->vertices,          view->triangles,       view->neighbours,  view->tree.nodes,
-                                  view->wide_tree.nodes,   view->wide_tree.items, view->support_map, view->flat_faces,
-                                  view->wide_tree.corners, view->spheres};
-    for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; ++k) scree_device_free(device, (void *)arrays[k]);
+#define SCREE_FREE(array, num) scree_device_free(device, (void *)view->array);
+    SCREE_SHAPE_ARRAYS(SCREE_FREE)
+#undef SCREE_FREE
     *view = (scree_shape_view){0};
 }

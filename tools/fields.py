@@ -2,7 +2,7 @@
 """Pictures of the averages of a run into RUN/pictures: porosity, velocity, power, collisions.
 
 Fields are means over whole periods, cut or averaged across one axis (--across, default y: the axis of a mill). Power is
-the work of the moving walls between rows of series.csv, and its mean over each whole revolution.
+the work of the moving walls between rows of series.csv; under it the torques of those that turn, in the rows.
 """
 import argparse
 
@@ -81,20 +81,28 @@ def moving_walls(series):
 
 
 def draw_power(run, path):
-    """Power of the moving walls between rows."""
+    """Power of the moving walls between rows, and the torques of those that turn."""
     series = run.series()
     walls = moving_walls(series)
-    figure, axes = plt.subplots(figsize=(9, 4.5), layout="constrained")
+    turning = [wall for wall in walls if f"torque_{wall}" in series]
+    num = 2 if turning else 1
+    figure, panels = plt.subplots(num, 1, figsize=(9, 1 + 3.5 * num), layout="constrained", sharex=True, squeeze=False)
+    panels = panels[:, 0]
     time = series["time"]
+    middle = (time[1:] + time[:-1]) / 2
     for wall in walls:
-        power = np.diff(series[f"work_{wall}"]) / np.diff(time)
-        axes.plot((time[1:] + time[:-1]) / 2, power, linewidth=0.9, label=wall)
+        panels[0].plot(middle, np.diff(series[f"work_{wall}"]) / np.diff(time), linewidth=0.9, label=wall)
     if len(walls) > 1:
         total = np.diff(sum(series[f"work_{wall}"] for wall in walls)) / np.diff(time)
-        axes.plot((time[1:] + time[:-1]) / 2, total, color="black", linewidth=1.1, label="all")
-    axes.axhline(0, color="black", linewidth=0.5)
-    axes.set(xlabel="time [s]", ylabel="power [W]", title=f"{run.name}: power of the moving walls")
-    axes.legend(frameon=False)
+        panels[0].plot(middle, total, color="black", linewidth=1.1, label="all")
+    for wall in turning:
+        panels[1].plot(time, series[f"torque_{wall}"], linewidth=0.9, label=wall)
+        panels[1].set(ylabel="torque [N m]")
+    for axes in panels:
+        axes.axhline(0, color="black", linewidth=0.5)
+        axes.legend(frameon=False)
+    panels[0].set(ylabel="power [W]", title=f"{run.name}: power of the moving walls")
+    panels[-1].set(xlabel="time [s]")
     figure.savefig(path, dpi=110)
     plt.close(figure)
 

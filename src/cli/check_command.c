@@ -115,6 +115,20 @@ static scree_status check_scene(const check_request *request, scree_scene_file *
     return status;
 }
 
+/// The last line, and the exit code. A machine or a build that lacks something is no fault of the scene.
+static int conclude(const check_request *request, scree_status status, int num_faults)
+{
+    if (status == SCREE_OK) return SCREE_EXIT_DONE;
+    if (num_faults == 0) fprintf(stderr, "scree check: %s\n", scree_status_text(status));
+    if (status == SCREE_NO_DEVICE)
+        fprintf(stderr, "%s: no fault found in the scene, but it cannot run on cuda:%d here\n", request->path,
+                request->device);
+    if (status == SCREE_OUT_OF_MEMORY || status == SCREE_NO_DEVICE) return SCREE_EXIT_FAILED;
+    if (num_faults > 0)
+        fprintf(stderr, "%s: refused, %d fault%s\n", request->path, num_faults, num_faults == 1 ? "" : "s");
+    return SCREE_EXIT_USAGE;
+}
+
 int scree_check_command(int argc, char **argv)
 {
     check_request request = {.device = -1, .overrides = calloc((size_t)argc + 1, sizeof(const char *))};
@@ -130,13 +144,7 @@ int scree_check_command(int argc, char **argv)
             scree_report report = {0};
             const scree_status status = check_scene(&request, &file, &report);
             scree_print_report(&report);
-            const int num_faults = scree_report_num_faults(&report);
-            if (status != SCREE_OK && num_faults == 0) fprintf(stderr, "scree check: %s\n", scree_status_text(status));
-            if (num_faults > 0)
-                fprintf(stderr, "%s: refused, %d fault%s\n", request.path, num_faults, num_faults == 1 ? "" : "s");
-            if (status != SCREE_OK)
-                exit_code =
-                    status == SCREE_OUT_OF_MEMORY || status == SCREE_NO_DEVICE ? SCREE_EXIT_FAILED : SCREE_EXIT_USAGE;
+            exit_code = conclude(&request, status, scree_report_num_faults(&report));
             scree_report_clear(&report);
             scree_scene_close(&file);
         }

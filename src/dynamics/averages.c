@@ -177,6 +177,26 @@ static int64_t num_due(const scree_averages *averages, double time_step, int64_t
     return (int64_t)floor(passed / (averages->period / (double)averages->samples) * (1 + 1e-12));
 }
 
+double scree_mean_power(const scree_simulation *simulation, int32_t wall)
+{
+    const scree_averages *averages = &simulation->averages;
+    return averages->num_periods > 0 ? averages->works.total[wall] / ((double)averages->num_periods * averages->period)
+                                     : (double)NAN;
+}
+
+double scree_mean_torque(const scree_simulation *simulation, int32_t wall)
+{
+    const scree_averages *averages = &simulation->averages;
+    const scree_motion_def *motion = &simulation->scene->walls[wall].motion;
+    if (motion->kind != SCREE_MOTION_ROTATE || averages->num_periods == 0) return (double)NAN;
+    // the whole periods are the last ones
+    const int64_t last = num_due(averages, simulation->time_step, simulation->step) / averages->samples;
+    const double end = averages->from + (double)last * averages->period;
+    const double begin = end - (double)averages->num_periods * averages->period;
+    const double angle = motion->angular_velocity * (fmin(end, motion->end) - fmax(begin, motion->start));
+    return angle * motion->angular_velocity > 0 ? averages->works.total[wall] / angle : (double)NAN;
+}
+
 scree_status scree_averages_restart(scree_simulation *simulation)
 {
     scree_averages *averages = &simulation->averages;

@@ -87,6 +87,12 @@ scree_status scree_averages_restart(scree_simulation *simulation);
 /// After a step: collisions and, if one is due, a sample.
 scree_status scree_update_averages(scree_simulation *simulation, scree_report *report);
 
+/// [W] mean power of a wall over the whole periods; NaN before the first is over.
+double scree_mean_power(const scree_simulation *simulation, int32_t wall);
+/// [N m] mean torque of a wall along its turning while it turned in the whole periods: work over angle. NaN if it has
+/// not turned in them.
+double scree_mean_torque(const scree_simulation *simulation, int32_t wall);
+
 /// Room for a spectrum or grid of this size, zeroed. SCREE_OUT_OF_MEMORY leaves it empty.
 scree_status scree_grid_sums_create(scree_grid_sums *sums, int64_t num_cells);
 void scree_grid_sums_destroy(scree_grid_sums *sums);

@@ -116,23 +116,30 @@ static bool put_image(hid_t file, const scree_simulation *simulation)
     return is_done;
 }
 
-/// What was averaged over, and the mean power of the walls.
+/// What was averaged over, and the mean power and torque of the walls.
 static bool put_averages(hid_t file, const scree_simulation *simulation)
 {
-    static const scree_field power_field = {
-        "power", "W", "mean power of each wall over the periods", SCREE_FIELD_DOUBLE, 1, 0};
+    static const scree_field wall_fields[2] = {
+        {"power", "W", "mean power of each wall over the periods", SCREE_FIELD_DOUBLE, 1, 0},
+        {"torque", "N m", "mean torque of each wall along its turning, while it turned in the periods",
+         SCREE_FIELD_DOUBLE, 1, 0},
+    };
     const scree_averages *averages = &simulation->averages;
-    const double seconds = (double)averages->num_periods * averages->period;
+    const int64_t num_walls = averages->works.num_walls;
     const hid_t group = make_group(file, "averages");
-    double *power = calloc((size_t)averages->works.num_walls + 1, sizeof *power);
-    bool is_done = group >= 0 && power != NULL;
-    for (int64_t w = 0; is_done && w < averages->works.num_walls; ++w) power[w] = averages->works.total[w] / seconds;
-    is_done = is_done && scree_hdf5_put_number(group, "num_periods", SCREE_FIELD_INT64, &averages->num_periods) &&
-              scree_hdf5_put_number(group, "samples", SCREE_FIELD_INT64, &averages->samples) &&
-              scree_hdf5_put_number(group, "period", SCREE_FIELD_DOUBLE, &averages->period) &&
-              scree_hdf5_put_number(group, "from", SCREE_FIELD_DOUBLE, &averages->from) &&
-              scree_hdf5_put_array(group, &power_field, power, averages->works.num_walls);
-    free(power);
+    double *values = calloc((size_t)num_walls + 1, sizeof *values);
+    bool is_done = group >= 0 && values != NULL &&
+                   scree_hdf5_put_number(group, "num_periods", SCREE_FIELD_INT64, &averages->num_periods) &&
+                   scree_hdf5_put_number(group, "samples", SCREE_FIELD_INT64, &averages->samples) &&
+                   scree_hdf5_put_number(group, "period", SCREE_FIELD_DOUBLE, &averages->period) &&
+                   scree_hdf5_put_number(group, "from", SCREE_FIELD_DOUBLE, &averages->from);
+    for (int k = 0; k < 2 && is_done; ++k)
+    {
+        for (int32_t w = 0; w < num_walls; ++w)
+            values[w] = k == 0 ? scree_mean_power(simulation, w) : scree_mean_torque(simulation, w);
+        is_done = scree_hdf5_put_array(group, wall_fields + k, values, num_walls);
+    }
+    free(values);
     if (is_done) H5Gclose(group);
     return is_done;
 }

@@ -119,7 +119,6 @@ static void put_repose(FILE *out, const scree_simulation *simulation, bool is_he
 static void put_wall_loads(FILE *out, const scree_simulation *simulation, bool is_healthy)
 {
     const scree_averages *averages = &simulation->averages;
-    const double seconds = (double)averages->num_periods * averages->period;
     put_integer(out, "fields_periods", averages->num_periods);
     put_key(out, "wall_loads");
     fputc('{', out);
@@ -137,7 +136,9 @@ static void put_wall_loads(FILE *out, const scree_simulation *simulation, bool i
         fputs(", \"torque_of_last_revolution\": ", out);
         put_value(out, power / wall->motion.angular_velocity);
         fputs(", \"power_of_periods\": ", out);
-        put_value(out, averages->num_periods > 0 ? averages->works.total[w] / seconds : (double)NAN);
+        put_value(out, averages->is_on ? scree_mean_power(simulation, w) : (double)NAN);
+        fputs(", \"torque_of_periods\": ", out);
+        put_value(out, averages->is_on ? scree_mean_torque(simulation, w) : (double)NAN);
         fputc('}', out);
         is_first = false;
     }

@@ -57,6 +57,16 @@ def test_set_changes_the_scene():
     assert "50000 steps of 1e-05 s" in result.stdout
 
 
+def test_a_gpu_that_is_not_there_is_no_fault_of_the_scene():
+    where = {"env": {**os.environ, "CUDA_VISIBLE_DEVICES": ""}}
+    result = scree("check", scene("cube_tower"), "--device", "cuda", **where)
+    assert result.returncode == 1 and 'plan of "cube_tower"' in result.stdout
+    assert "cube_tower.yaml: no fault found in the scene, but it cannot run on cuda:0 here" in result.stderr
+    assert "refused" not in result.stderr
+    result = scree("check", scene("cube_tower"), "--device", "cuda", "--set", "time.end=-1", **where)
+    assert result.returncode == 2 and "refused, 1 fault" in result.stderr and "cuda" not in result.stderr
+
+
 def test_print_fills_in_defaults_and_reads_the_same(tmp_path):
     first = scree("check", "--print", scene("free_cloud"), "--set", "time.end=0.125")
     assert first.returncode == 0

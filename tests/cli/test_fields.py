@@ -1,4 +1,5 @@
 """Fields of a run as a user meets them: fields.vtkhdf opened by VTK and by h5py, restart, replace, pictures, faults."""
+import json
 import os
 import subprocess
 import sys
@@ -97,8 +98,6 @@ def test_the_fields_hold_the_particles(whole):
 
 
 def test_power_is_the_work_of_the_wall_over_time(whole):
-    import json
-
     summary = json.loads((whole / "summary.json").read_text())
     rows = (whole / "series.csv").read_text().splitlines()
     names = rows[0].split(",")
@@ -115,6 +114,28 @@ def test_power_is_the_work_of_the_wall_over_time(whole):
     assert min(table[low:high + 1, column]) - margin <= work <= max(table[low:high + 1, column]) + margin
     assert summary["fields_periods"] == 2
     assert np.isclose(summary["wall_loads"]["drum"]["power_of_periods"] * 2 * PERIOD, work, rtol=1e-12)
+
+
+def test_torque_is_the_mean_of_the_rows(tmp_path):
+    """A row per step; the drum turns in a part of the second period only, the floor never."""
+    folder = tmp_path / "run"
+    floor = "  - {name: floor, shape: cube, material: stone, position: [0, 0, -1]}\noutput:"
+    (tmp_path / "scene.yaml").write_text(SCENE.replace("output:", floor))
+    run(tmp_path / "scene.yaml", "-o", folder, "--quiet", "--set", "output.series=1e-4", "--set", "walls.drum.motion.start=0.19995",
+        "--set", "fields.wall=''", "--set", "fields.period=0.15")
+    lines = (folder / "series.csv").read_text().splitlines()
+    table = np.array([line.split(",") for line in lines[1:]], dtype=float)
+    torque = table[:, lines[0].split(",").index("torque_drum [N m]")]
+    with h5py.File(folder / "fields.vtkhdf") as file:
+        mean, none = file["averages/torque"][:]
+        power = file["averages/power"][0]
+        assert file["averages/torque"].attrs["unit"] == b"N m" and file["averages"].attrs["num_periods"] == 2
+    # steps 2000 to 3000 turn it, over 0.10005 s
+    assert np.isclose(table[3000, 0], 0.3, rtol=1e-12) and np.isnan(none)
+    assert np.isclose(mean, torque[2000:3001].sum() * 1e-4 / 0.10005, rtol=1e-9) and abs(mean) > 1e-6
+    assert np.isclose(mean * -40 * 0.10005, power * 0.3, rtol=1e-12)
+    summary = json.loads((folder / "summary.json").read_text())
+    assert summary["wall_loads"]["drum"]["torque_of_periods"] == mean
 
 
 def test_a_restart_gives_the_same_file(scene, whole, tmp_path):

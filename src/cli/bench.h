@@ -16,15 +16,17 @@ typedef struct scree_bench_request
     const char *scene;      ///< file of the rig
     const char **overrides; ///< (num_overrides) of the scene
     int num_overrides;
+    const char **words; ///< (num_words) of the command line that say what is measured
+    int num_words;
     const char *json;     ///< where the result goes as JSON
     const char *baseline; ///< result to compare with
     const char *order;    ///< of particles in a bed: "lattice", "morton" or "random"
     double depth;         ///< mean indentation over the bounding diameter in a bed
     int64_t particles;
     int64_t triangles;
-    int64_t steps;        ///< in one repetition
-    int64_t repetitions;  ///< at least 3
-    int64_t search_every; ///< [steps] between searches in a bed
+    int64_t steps; ///< in one repetition
+    int64_t repetitions;
+    int64_t search_every; ///< [steps] between searches in a bed; steps is a multiple of it
     int64_t threads;
     int64_t parts;      ///< of a run
     int32_t device;     ///< number of a GPU that the steps of beds are done on; -1: the CPU
@@ -46,7 +48,7 @@ typedef struct scree_bench
     const scree_bench_request *request;
     const scree_bench_column *columns; ///< (num_columns)
     int num_columns;
-    json_t *cases; ///< array of objects; each has "name", "core_seconds" (its main time) and "spread"
+    json_t *cases; ///< array of objects; each has "name", "core_seconds" (its main time) and, if repeated, "spread"
     scree_report *report;
     bool has_header;
     bool is_quiet; ///< no tables
@@ -69,6 +71,8 @@ void scree_bench_sort(scree_bench_samples samples);
 double scree_bench_median(scree_bench_samples samples);
 /// Largest minus smallest over the median, the noise of a measurement.
 double scree_bench_spread(scree_bench_samples samples);
+/// The spread to a case under a key, unless there is but one sample: that tells no noise.
+void scree_bench_set_noise(json_t *measured, const char *key, scree_bench_samples samples);
 /// [s] of all threads of this process.
 double scree_bench_core_seconds(void);
 double scree_bench_wall_seconds(void);
@@ -80,8 +84,10 @@ json_t *scree_bench_machine(void);
 /// A GPU by itself, to be called while it is not in use: name, free memory, bytes that a copy within it reads and
 /// writes in a second. Those of scree_device_open().
 scree_status scree_bench_device(int32_t number, json_t **described, scree_report *report);
-/// Ratios of the cases to those of a file. SCREE_READ_FAILED, SCREE_INVALID_INPUT.
-scree_status scree_bench_compare(const scree_bench *bench, const char *path);
+/// The result of this benchmark in a file, to be freed by json_decref. SCREE_READ_FAILED, SCREE_INVALID_INPUT.
+scree_status scree_bench_read_baseline(const scree_bench_request *request, json_t **baseline, scree_report *report);
+/// Prints ratios of the cases to those of a baseline.
+void scree_bench_compare(const scree_bench *bench, const json_t *baseline);
 
 /// A dense bed of equal bodies.
 typedef struct scree_bench_bed
@@ -115,9 +121,42 @@ scree_status scree_bench_copy_places(scree_simulation *s, const scree_simulation
 /// walls, in drums[1] with them, in the same places. Each to be destroyed as a bed.
 scree_status scree_bench_drum_create(scree_bench_bodies drums[2], int64_t num_beads, scree_report *report);
 
-/// Measures steps of a simulation: the case, with times per stage, touching pair and candidate, and bytes. NULL if a
-/// step fails. With search_every > 0 candidate pairs are searched that often.
-json_t *scree_bench_steps(scree_simulation *simulation, const scree_bench_request *request, scree_report *report);
+/// What the plan of a simulation says of one item, and what the whole process takes [bytes].
+json_t *scree_bench_memory(const scree_simulation *simulation);
+
+/// Seconds of each repetition of some steps, whole and per stage.
+typedef struct scree_bench_times
+{
+    double *core, *wall;                                                 ///< (num)
+    double *stage_core[SCREE_NUM_STAGES], *stage_wall[SCREE_NUM_STAGES]; ///< (num)
+    int num;
+    int64_t num_searches; ///< in all
+} scree_bench_times;
+
+/// False if memory is out.
+bool scree_bench_times_create(scree_bench_times *times, int num);
+void scree_bench_times_destroy(scree_bench_times *times);
+/// A share of the times of the stages to those of repetition r.
+void scree_bench_times_set_stages(scree_bench_times *times, int r, const scree_stage_times *stages, double share);
+/// Medians, spread and all whole times to a case, times of stages also for each of num_contacts. Sorts the times.
+void scree_bench_times_describe(scree_bench_times *times, double num_contacts, json_t *measured);
+
+/// A simulation and on how many threads its steps are done.
+typedef struct scree_bench_way
+{
+    scree_simulation *simulation;
+    int threads;
+} scree_bench_way;
+
+/// Beads at the beginning of their fall into that drum, twice: by the automatic skin, and by one of a tenth.
+scree_status scree_bench_falling_create(scree_bench_bodies twins[2], int64_t num_beads, scree_report *report);
+
+/// Measures steps of one simulation, or of two in turn, so that both meet the same state of the machine: a case for
+/// each, with medians of times per stage, touching pair and candidate, and bytes. The second of two has the median
+/// ratio of its times to those of the first in the same turn, elapsed ones if the numbers of threads differ, and their
+/// spread. With search_every > 0 candidate pairs are searched that often. The cases are NULL if a step fails.
+scree_status scree_bench_steps(const scree_bench_way *ways, int num_ways, const scree_bench_request *request,
+                               json_t **cases, scree_report *report);
 /// The columns that go with it.
 extern const scree_bench_column scree_bench_step_columns[];
 extern const int scree_bench_num_step_columns;

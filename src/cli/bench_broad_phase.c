@@ -107,23 +107,24 @@ static bool measure_once(scree_broad_phase *broad_phase, const scree_broad_phase
 
 static json_t *describe(const box_kind *kind, int64_t num, int64_t num_pairs, double *times, int num_repeats)
 {
-    double middle[NUM_TIMES], spread = 0;
+    double middle[NUM_TIMES];
     for (int k = 0; k < NUM_TIMES; ++k)
     {
         const scree_bench_samples samples = {times + k * num_repeats, num_repeats};
         scree_bench_sort(samples);
         middle[k] = scree_bench_median(samples);
-        if (k == WHOLE) spread = scree_bench_spread(samples);
     }
     json_t *stages = json_pack("{s:f, s:f, s:f, s:f, s:f}", "build", middle[BUILD], "refit", middle[REFIT], "search",
                                middle[SEARCH], "plain_search", middle[PLAIN_SEARCH], "sort_and_rows",
                                middle[WHOLE] - middle[BUILD] - middle[SEARCH]);
-    return json_pack("{s:s, s:i, s:I, s:I, s:f, s:f, s:f, s:f, s:f, s:f, s:i, s:o}", "name", kind->name, "threads",
-                     omp_get_max_threads(), "particles", (json_int_t)num, "pairs", (json_int_t)num_pairs,
-                     "pairs_per_particle", (double)num_pairs / (double)num, "core_seconds", middle[WHOLE],
-                     "wall_seconds", middle[WALL], "build_and_search", middle[BUILD] + middle[SEARCH],
-                     "core_ns_per_pair", num_pairs > 0 ? 1e9 * middle[WHOLE] / (double)num_pairs : 0, "spread", spread,
-                     "repetitions", num_repeats, "stages", stages);
+    json_t *measured = json_pack(
+        "{s:s, s:i, s:I, s:I, s:f, s:f, s:f, s:f, s:f, s:i, s:o}", "name", kind->name, "threads", omp_get_max_threads(),
+        "particles", (json_int_t)num, "pairs", (json_int_t)num_pairs, "pairs_per_particle",
+        (double)num_pairs / (double)num, "core_seconds", middle[WHOLE], "wall_seconds", middle[WALL],
+        "build_and_search", middle[BUILD] + middle[SEARCH], "core_ns_per_pair",
+        num_pairs > 0 ? 1e9 * middle[WHOLE] / (double)num_pairs : 0, "repetitions", num_repeats, "stages", stages);
+    scree_bench_set_noise(measured, "spread", (scree_bench_samples){times + WHOLE * num_repeats, num_repeats});
+    return measured;
 }
 
 static json_t *measure(const box_kind *kind, int64_t num, int num_repeats)

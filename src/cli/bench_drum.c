@@ -29,7 +29,7 @@ static const char
               "  - {name: lifters, shape: lifters, material: wall, orientation: [0.7071, -0.7071, 0, 0]}\n";
 
 static scree_status make(scree_bench_bodies *bodies, int64_t num_beads, const char *step, bool has_walls,
-                         scree_report *report)
+                         const char *solver, scree_report *report)
 {
     const double size = cbrt(6 * SOLID_FRACTION * RADIUS * RADIUS * LENGTH / (double)num_beads);
     char text[2400];
@@ -43,10 +43,11 @@ static scree_status make(scree_bench_bodies *bodies, int64_t num_beads, const ch
              "  - {name: bead, source: sphere, size: %.17g}\n%s"
              "particles:\n"
              "  - {name: beads, shape: bead, material: glass, count: %lld, spacing: 1.02, velocity: [0, 0, %d],\n"
-             "     region: {min: [-0.139, -0.135, -0.139], max: [0.139, 0.135, 0.139], cylinder: y}}\n%s",
+             "     region: {min: [-0.139, -0.135, -0.139], max: [0.139, 0.135, 0.139], cylinder: y}}\n%s"
+             "solver: {%s}\n",
              SETTLING_TIME, step, has_walls ? wall_material : "", has_walls ? wall_law : "", size,
              has_walls ? wall_shapes : "", (long long)num_beads, strcmp(step, "auto") == 0 ? -1 : 0,
-             has_walls ? walls : "");
+             has_walls ? walls : "", solver);
     scree_status status = scree_scene_parse(&bodies->file, text, "bench.yaml", NULL, 0, report);
     if (status == SCREE_OK) status = scree_simulation_create(&bodies->simulation, &bodies->file.scene, ".", report);
     return status;
@@ -64,15 +65,24 @@ scree_status scree_bench_drum_create(scree_bench_bodies drums[2], int64_t num_be
 {
     drums[0] = drums[1] = (scree_bench_bodies){0};
     scree_bench_bodies falling = {0};
-    scree_status status = make(&falling, num_beads, "auto", true, report);
+    scree_status status = make(&falling, num_beads, "auto", true, "", report);
     if (status == SCREE_OK) status = settle(falling.simulation, report);
     // a step so short that nothing moves: without walls the beads stay where they are
     for (int k = 0; k < 2 && status == SCREE_OK; ++k)
     {
-        status = make(drums + k, num_beads, "1e-9", k == 1, report);
+        status = make(drums + k, num_beads, "1e-9", k == 1, "", report);
         if (status == SCREE_OK) status = scree_bench_copy_places(drums[k].simulation, falling.simulation, report);
     }
     scree_bench_bed_destroy(&falling);
     for (int k = 0; k < 2 && status != SCREE_OK; ++k) scree_bench_bed_destroy(drums + k);
+    return status;
+}
+
+scree_status scree_bench_falling_create(scree_bench_bodies twins[2], int64_t num_beads, scree_report *report)
+{
+    twins[0] = twins[1] = (scree_bench_bodies){0};
+    scree_status status = make(twins, num_beads, "auto", true, "", report);
+    if (status == SCREE_OK) status = make(twins + 1, num_beads, "auto", true, "skin: 0.1", report);
+    for (int k = 0; k < 2 && status != SCREE_OK; ++k) scree_bench_bed_destroy(twins + k);
     return status;
 }

@@ -2,7 +2,7 @@
 /// scree bench overlap: time of one overlap on one core for touching pairs of equal shapes at random orientations,
 /// indented by 1e-4 to 5e-2 of their size (log-uniform), or by one depth. The whole call by the default scheme with and
 /// without the convex path and by the hierarchy; where the time of the general path goes, and how much work there is.
-/// Least of several rounds over all pairs, which go on in turn so that each way meets the same state of the machine.
+/// Medians of several rounds over all pairs, which go on in turn so that each way meets the same state of the machine.
 #include "cli/bench.h"
 #include "cli/mesh_argument.h"
 #include "contact/overlap_kernel.h"
@@ -11,6 +11,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+enum
+{
+    NUM_WAYS = 3 ///< default, without the convex path, hierarchy
+};
 
 typedef struct bench_pairs
 {
@@ -89,14 +94,13 @@ static void make_pairs(const scree_shape *shape, scree_overlap_workspace *worksp
     }
 }
 
-/// Seconds of one call by each of several ways, in turn; the least of several rounds.
+/// Seconds of one call by each of several ways, in turn, to times[way * num_rounds + round].
 static void time_ways(const scree_shape *shape, const bench_pairs *pairs, const scree_overlap_options *ways,
-                      int num_ways, int num_rounds, scree_overlap_workspace *workspace, double *least)
+                      int num_rounds, scree_overlap_workspace *workspace, double *times)
 {
-    for (int w = 0; w < num_ways; ++w) least[w] = 1e300;
     for (int round = 0; round < num_rounds; ++round)
     {
-        for (int w = 0; w < num_ways; ++w)
+        for (int w = 0; w < NUM_WAYS; ++w)
         {
             const double start = scree_bench_core_seconds();
             for (int i = 0; i < pairs->num; ++i)
@@ -104,8 +108,7 @@ static void time_ways(const scree_shape *shape, const bench_pairs *pairs, const 
                 scree_overlap_result result;
                 compute(shape, pairs->a + i, pairs->b + i, ways + w, workspace, &result);
             }
-            const double time = (scree_bench_core_seconds() - start) / pairs->num;
-            if (time < least[w]) least[w] = time;
+            times[w * num_rounds + round] = (scree_bench_core_seconds() - start) / pairs->num;
         }
     }
 }
@@ -157,12 +160,12 @@ static double count_triangle_pairs(const scree_overlap_slice *slice)
     return num;
 }
 
+/// Seconds of one pair up to each stage to times[stage * num_rounds + round], and the work of all pairs.
 static void time_stages(const scree_shape *shape, const bench_pairs *pairs, int num_rounds,
-                        scree_overlap_workspace *workspace, double *least, bench_work *work)
+                        scree_overlap_workspace *workspace, double *times, bench_work *work)
 {
     // the workspace is its slice of buffers and nothing else
     scree_overlap_slice *slice = (scree_overlap_slice *)workspace;
-    for (int stage = 0; stage < NUM_STAGES; ++stage) least[stage] = 1e300;
     for (int round = 0; round < num_rounds; ++round)
     {
         for (int stage = 0; stage < NUM_STAGES; ++stage)
@@ -175,8 +178,7 @@ static void time_stages(const scree_shape *shape, const bench_pairs *pairs, int 
                 const scree_overlap_pair pair = {{&shape->view, &shape->view}, {pairs->a + i, pairs->b + i}};
                 run_stages(&pair, stage, slice, work);
             }
-            const double time = (scree_bench_core_seconds() - start) / pairs->num;
-            if (time < least[stage]) least[stage] = time;
+            times[stage * num_rounds + round] = (scree_bench_core_seconds() - start) / pairs->num;
         }
     }
     for (int i = 0; i < pairs->num; ++i)
@@ -188,33 +190,51 @@ static void time_stages(const scree_shape *shape, const bench_pairs *pairs, int 
     }
 }
 
+/// Medians of num rows of num_rounds times each, which are sorted.
+static void take_medians(double *times, int num, int num_rounds, double *medians)
+{
+    for (int k = 0; k < num; ++k)
+    {
+        const scree_bench_samples samples = {times + k * num_rounds, num_rounds};
+        scree_bench_sort(samples);
+        medians[k] = scree_bench_median(samples);
+    }
+}
+
 /// Times of a shape as a case.
 static json_t *measure_shape(const scree_bench *bench, const char *name, const scree_shape *shape, int num)
 {
     const int num_rounds = (int)bench->request->repetitions;
     scree_overlap_workspace *workspace = scree_overlap_workspace_create();
     bench_pairs pairs = {malloc((size_t)num * sizeof(scree_pose)), malloc((size_t)num * sizeof(scree_pose)), num};
-    stop_unless(workspace != NULL && pairs.a != NULL && pairs.b != NULL);
+    double *times = malloc((size_t)((NUM_WAYS + NUM_STAGES) * num_rounds) * sizeof *times);
+    stop_unless(workspace != NULL && pairs.a != NULL && pairs.b != NULL && times != NULL);
     make_pairs(shape, workspace, bench->request->depth, &pairs);
-    static const scree_overlap_options ways[] = {{SCREE_OVERLAP_FILTERED, false, true},
-                                                 {SCREE_OVERLAP_FILTERED, false, false},
-                                                 {SCREE_OVERLAP_HIERARCHY, false, false}};
-    double whole[3], stages[NUM_STAGES];
+    static const scree_overlap_options ways[NUM_WAYS] = {{SCREE_OVERLAP_FILTERED, false, true},
+                                                         {SCREE_OVERLAP_FILTERED, false, false},
+                                                         {SCREE_OVERLAP_HIERARCHY, false, false}};
+    double whole[NUM_WAYS], stages[NUM_STAGES], *stage_times = times + NUM_WAYS * num_rounds;
     bench_work work;
-    time_ways(shape, &pairs, ways, 3, num_rounds, workspace, whole);
-    time_stages(shape, &pairs, num_rounds, workspace, stages, &work);
-    free(pairs.a);
-    free(pairs.b);
-    scree_overlap_workspace_destroy(workspace);
+    time_ways(shape, &pairs, ways, num_rounds, workspace, times);
+    time_stages(shape, &pairs, num_rounds, workspace, stage_times, &work);
+    take_medians(times, NUM_WAYS, num_rounds, whole);
+    take_medians(stage_times, NUM_STAGES, num_rounds, stages);
     for (int stage = NUM_STAGES - 1; stage > 0; --stage) stages[stage] -= stages[stage - 1];
     char text[64];
     snprintf(text, sizeof text, "%s %d", name, shape->view.num_triangles);
-    return json_pack("{s:s, s:i, s:i, s:i, s:f, s:f, s:f, s:f, s:{s:f, s:f, s:f, s:f, s:f}, s:{s:f, s:f, s:f, s:f}}",
-                     "name", text, "threads", 1, "particles", num, "triangles", shape->view.num_triangles,
-                     "core_seconds", whole[0], "spread", 0.0, "general", whole[1], "hierarchy", whole[2], "stages",
-                     "frame", stages[STAGE_FRAME], "filter", stages[STAGE_FILTER], "crossings", stages[STAGE_CROSSINGS],
-                     "sums", stages[STAGE_SUMS], "result", stages[STAGE_RESULT], "work", "kept", work.kept / num,
-                     "pairs", work.pairs / num, "segments", work.segments / num, "inside", work.inside / num);
+    json_t *measured = json_pack(
+        "{s:s, s:i, s:i, s:i, s:f, s:i, s:f, s:f, s:f, s:{s:f, s:f, s:f, s:f, s:f}, s:{s:f, s:f, s:f, s:f}}", "name",
+        text, "threads", 1, "particles", num, "triangles", shape->view.num_triangles, "depth", bench->request->depth,
+        "repetitions", num_rounds, "core_seconds", whole[0], "general", whole[1], "hierarchy", whole[2], "stages",
+        "frame", stages[STAGE_FRAME], "filter", stages[STAGE_FILTER], "crossings", stages[STAGE_CROSSINGS], "sums",
+        stages[STAGE_SUMS], "result", stages[STAGE_RESULT], "work", "kept", work.kept / num, "pairs", work.pairs / num,
+        "segments", work.segments / num, "inside", work.inside / num);
+    scree_bench_set_noise(measured, "spread", (scree_bench_samples){times, num_rounds});
+    free(times);
+    free(pairs.a);
+    free(pairs.b);
+    scree_overlap_workspace_destroy(workspace);
+    return measured;
 }
 
 static const scree_bench_column columns[] = {
@@ -231,6 +251,7 @@ static const scree_bench_column columns[] = {
     {"work.pairs", "pairs", 1, 1},
     {"work.segments", "segments", 1, 1},
     {"work.inside", "inside", 1, 1},
+    {"spread", "spread %", 100, 0},
 };
 
 /// A shape to measure, in the words of a command line; its pairs are a share of those asked for.

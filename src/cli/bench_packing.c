@@ -9,15 +9,28 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum
+{
+    FALLING_STEPS = 10 ///< steps of things that move for one of a bed at rest: a skin lasts long
+};
+
+/// What a baseline is matched by.
+static void set_bed(json_t *measured, const scree_bench_bed *bed)
+{
+    json_object_set_new(measured, "depth", json_real(bed->depth));
+    json_object_set_new(measured, "order", json_string(bed->order));
+}
+
 /// Steps of a bed, measured: its case, or NULL.
 static json_t *measure_bed(const scree_bench *bench, const scree_bench_bodies *bodies, const scree_bench_bed *bed,
                            const char *name)
 {
-    json_t *measured = scree_bench_steps(bodies->simulation, bench->request, bench->report);
-    if (measured == NULL) return NULL;
+    const scree_bench_way way = {bodies->simulation, omp_get_max_threads()};
+    json_t *measured = NULL;
+    if (scree_bench_steps(&way, 1, bench->request, &measured, bench->report) != SCREE_OK) return NULL;
     json_object_set_new(measured, "name", json_string(name));
     json_object_set_new(measured, "mean_depth", json_real(bodies->depth));
-    json_object_set_new(measured, "order", json_string(bed->order));
+    set_bed(measured, bed);
     return measured;
 }
 
@@ -63,51 +76,24 @@ static const saving savings[] = {
     {"- all of these", "compare_spheres: false, find_separation: false, reuse_pairs: false"},
 };
 
-/// A simulation and on how many threads its steps are done.
-typedef struct bench_way
+/// Measures steps of two simulations in turn and adds their cases: of `names`, NULL for one that is not wanted.
+static scree_status add_in_turn(scree_bench *bench, const scree_bench_request *request, const scree_bench_way ways[2],
+                                const scree_bench_bed *bed, const char *const names[2])
 {
-    scree_simulation *simulation;
-    int threads;
-} bench_way;
-
-/// Steps done in one way, measured in turn with another, so that both meet the same state of the machine: the case of
-/// `way` with the median ratio of times of `kind` ("core_seconds" or "wall_seconds"). The spread is that of the ratios.
-static json_t *measure_in_turn(const scree_bench *bench, bench_way reference, bench_way way, const char *kind)
-{
-    scree_bench_request once = *bench->request;
-    once.repetitions = 1;
-    double *ratios = malloc((size_t)bench->request->repetitions * sizeof *ratios);
-    json_t *measured = NULL;
-    bool is_complete = ratios != NULL;
-    for (int64_t r = 0; r < bench->request->repetitions && is_complete; ++r)
+    json_t *cases[2] = {NULL, NULL};
+    scree_status status = scree_bench_steps(ways, 2, request, cases, bench->report);
+    for (int w = 0; w < 2; ++w)
     {
-        json_decref(measured);
-        omp_set_num_threads(reference.threads);
-        json_t *before = scree_bench_steps(reference.simulation, &once, bench->report);
-        omp_set_num_threads(way.threads);
-        measured = scree_bench_steps(way.simulation, &once, bench->report);
-        is_complete = before != NULL && measured != NULL;
-        if (is_complete)
-            ratios[r] =
-                json_number_value(json_object_get(measured, kind)) / json_number_value(json_object_get(before, kind));
-        json_decref(before);
+        if (status != SCREE_OK || names[w] == NULL)
+        {
+            json_decref(cases[w]);
+            continue;
+        }
+        if (bed != NULL) set_bed(cases[w], bed);
+        json_object_set_new(cases[w], "name", json_string(names[w]));
+        status = scree_bench_add(bench, cases[w]);
     }
-    omp_set_num_threads((int)bench->request->threads);
-    if (is_complete)
-    {
-        const scree_bench_samples samples = {ratios, (int)bench->request->repetitions};
-        scree_bench_sort(samples);
-        json_object_set_new(measured, "times_as_long", json_real(scree_bench_median(samples)));
-        json_object_set_new(measured, "spread", json_real(scree_bench_spread(samples)));
-        json_object_set_new(measured, "repetitions", json_integer(samples.num));
-    }
-    else
-    {
-        json_decref(measured);
-        measured = NULL;
-    }
-    free(ratios);
-    return measured;
+    return status;
 }
 
 static scree_status add_savings(scree_bench *bench, scree_bench_bed bed, const char *name)
@@ -124,10 +110,8 @@ static scree_status add_savings(scree_bench *bench, scree_bench_bed bed, const c
         scree_bench_bodies without;
         status = scree_bench_bed_create(&without, &bed, bench->report);
         if (status != SCREE_OK) break;
-        json_t *measured = measure_in_turn(bench, (bench_way){reference.simulation, threads},
-                                           (bench_way){without.simulation, threads}, "core_seconds");
-        if (measured != NULL) json_object_set_new(measured, "name", json_string(text));
-        status = measured != NULL ? scree_bench_add(bench, measured) : SCREE_UNSTABLE;
+        const scree_bench_way ways[2] = {{reference.simulation, threads}, {without.simulation, threads}};
+        status = add_in_turn(bench, bench->request, ways, &bed, (const char *const[2]){NULL, text});
         scree_bench_bed_destroy(&without);
     }
     scree_bench_bed_destroy(&reference);
@@ -179,35 +163,33 @@ static scree_status add_threads(scree_bench *bench, const scree_bench_bed *bed)
     scree_bench_bodies bodies;
     scree_status status = scree_bench_bed_create(&bodies, bed, bench->report);
     if (status != SCREE_OK) return status;
-    json_t *measured = measure_in_turn(bench, (bench_way){bodies.simulation, 1},
-                                       (bench_way){bodies.simulation, threads}, "wall_seconds");
     char name[64];
     snprintf(name, sizeof name, "sphere, %d threads in turn with one", threads);
-    if (measured != NULL) json_object_set_new(measured, "name", json_string(name));
-    status = measured != NULL ? scree_bench_add(bench, measured) : SCREE_UNSTABLE;
+    const scree_bench_way ways[2] = {{bodies.simulation, 1}, {bodies.simulation, threads}};
+    status = add_in_turn(bench, bench->request, ways, bed, (const char *const[2]){NULL, name});
     if (status == SCREE_OK && !bench->is_quiet)
         printf("%d threads are %.2f times as fast as one\n", threads, 1 / last_ratio(bench));
     scree_bench_bed_destroy(&bodies);
     return status;
 }
 
-/// Beads in a drum, without its walls and with them. Fewer, for they have to fall first; at least as many as fit beside
-/// the lifters.
+/// Beads in a drum: fewer than in the bed, for they have to fall first; at least as many as fit beside the lifters.
+static int64_t num_beads_of(const scree_bench *bench)
+{
+    return bench->request->particles < 500 ? 200 : bench->request->particles * 2 / 5;
+}
+
+/// Beads in a drum, without its walls and with them.
 static scree_status add_drum(scree_bench *bench)
 {
-    const int64_t num_beads = bench->request->particles < 500 ? 200 : bench->request->particles * 2 / 5;
+    const int64_t num_beads = num_beads_of(bench);
     const int threads = (int)bench->request->threads;
     scree_bench_bodies drums[2];
     scree_status status = scree_bench_drum_create(drums, num_beads, bench->report);
     if (status != SCREE_OK) return status;
-    json_t *bare = scree_bench_steps(drums[0].simulation, bench->request, bench->report);
-    if (bare != NULL) json_object_set_new(bare, "name", json_string("beads of a drum, no walls"));
-    status = bare != NULL ? scree_bench_add(bench, bare) : SCREE_UNSTABLE;
-    json_t *measured = status == SCREE_OK ? measure_in_turn(bench, (bench_way){drums[0].simulation, threads},
-                                                            (bench_way){drums[1].simulation, threads}, "core_seconds")
-                                          : NULL;
-    if (measured != NULL) json_object_set_new(measured, "name", json_string("beads in a drum of meshes"));
-    if (status == SCREE_OK) status = measured != NULL ? scree_bench_add(bench, measured) : SCREE_UNSTABLE;
+    const scree_bench_way ways[2] = {{drums[0].simulation, threads}, {drums[1].simulation, threads}};
+    static const char *const names[2] = {"beads of a drum, no walls", "beads in a drum of meshes"};
+    status = add_in_turn(bench, bench->request, ways, NULL, names);
     if (status == SCREE_OK && !bench->is_quiet)
         printf(
             "walls of meshes take %.0f %% on top in the drum of %lld beads, with %.2f contacts of a bead with them\n",
@@ -218,16 +200,36 @@ static scree_status add_drum(scree_bench *bench)
     return status;
 }
 
+/// What the automatic skin gains, which only shows where things move: beads on their fall into a drum, by the automatic
+/// skin and by one of a tenth. No result depends on the skin, so both go through the same states.
+static scree_status add_skins(scree_bench *bench)
+{
+    const int threads = (int)bench->request->threads;
+    scree_bench_request request = *bench->request;
+    request.search_every = 0;
+    request.steps *= FALLING_STEPS;
+    scree_bench_bodies twins[2];
+    scree_status status = scree_bench_falling_create(twins, num_beads_of(bench), bench->report);
+    if (status != SCREE_OK) return status;
+    static const char *const names[2] = {"beads falling into a drum", "beads falling - automatic skin"};
+    const scree_bench_way ways[2] = {{twins[0].simulation, threads}, {twins[1].simulation, threads}};
+    status = add_in_turn(bench, &request, ways, NULL, names);
+    for (int k = 0; k < 2; ++k) scree_bench_bed_destroy(twins + k);
+    return status;
+}
+
 scree_status scree_bench_spheres(scree_bench *bench)
 {
     // five contacts each
-    const scree_bench_bed bed = {"sphere", 0, bench->request->particles, 2.5, 5e-3, bench->request->order, "", NULL};
+    scree_bench_bed bed = {"sphere", 0, bench->request->particles, 2.5, 5e-3, bench->request->order, "", NULL};
+    if (bench->request->depth > 0) bed.depth = bench->request->depth;
     scree_bench_set_columns(bench, scree_bench_step_columns, scree_bench_num_step_columns);
     scree_status status = add_bed(bench, &bed, "sphere");
     if (status == SCREE_OK && bench->request->shows_savings) status = add_savings(bench, bed, "sphere");
     if (status != SCREE_OK || bench->request->device >= 0) return status;
     status = add_threads(bench, &bed);
-    return status == SCREE_OK ? add_drum(bench) : status;
+    if (status == SCREE_OK) status = add_drum(bench);
+    return status == SCREE_OK && bench->request->shows_savings ? add_skins(bench) : status;
 }
 
 /// How one bed's cost grows with its bodies, and falls with threads.

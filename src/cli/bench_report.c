@@ -51,6 +51,11 @@ double scree_bench_spread(scree_bench_samples samples)
     return middle > 0 ? (samples.values[samples.num - 1] - samples.values[0]) / middle : 0;
 }
 
+void scree_bench_set_noise(json_t *measured, const char *key, scree_bench_samples samples)
+{
+    if (samples.num > 1) json_object_set_new(measured, key, json_real(scree_bench_spread(samples)));
+}
+
 /// Value of "a.b.c" in a case, or NULL.
 static const json_t *find_value(const json_t *object, const char *key)
 {
@@ -132,73 +137,105 @@ json_t *scree_bench_machine(void)
                      compiler, "precision", sizeof(scree_real) == sizeof(double) ? "double" : "single");
 }
 
-/// The case of the same benchmark, name, number of threads and of particles.
+/// Is what a case was measured on the same in both? Numbers in a file have six digits.
+static bool is_same_value(const json_t *a, const json_t *b)
+{
+    if (a == NULL || b == NULL) return a == b;
+    if (!json_is_real(a) && !json_is_real(b)) return json_equal(a, b) != 0;
+    return fabs(json_number_value(a) - json_number_value(b)) <= 1e-5 * fabs(json_number_value(b));
+}
+
+/// The case of the same name and settings.
 static const json_t *find_case(const json_t *cases, const json_t *wanted)
 {
-    static const char *const keys[] = {"name", "threads", "particles"};
+    static const char *const keys[] = {"name", "threads", "particles", "steps", "order", "depth", "search_every"};
     size_t k;
     const json_t *one;
     json_array_foreach(cases, k, one)
     {
         bool is_same = true;
         for (size_t n = 0; n < sizeof keys / sizeof *keys; ++n)
-        {
-            const json_t *a = json_object_get(one, keys[n]), *b = json_object_get(wanted, keys[n]);
-            is_same = is_same && (a == b || (a != NULL && b != NULL && json_equal(a, b)));
-        }
+            is_same = is_same && is_same_value(json_object_get(one, keys[n]), json_object_get(wanted, keys[n]));
         if (is_same) return one;
     }
     return NULL;
 }
 
-static void print_ratios(const scree_bench *bench, const json_t *then)
+/// "2.5 %", or that it is not known.
+static const char *noise_text(const json_t *one, char *text, size_t size)
+{
+    const json_t *spread = json_object_get(one, "spread");
+    if (spread == NULL) return "unknown (measured once)";
+    snprintf(text, size, "%.0f %%", 100 * json_number_value(spread));
+    return text;
+}
+
+/// Number of cases that the baseline lacks.
+static int print_ratios(const scree_bench *bench, const json_t *then)
 {
     size_t k;
     const json_t *now;
+    int num_missing = 0;
     json_array_foreach(bench->cases, k, now)
     {
         const char *name = json_string_value(json_object_get(now, "name"));
         const json_t *old = find_case(json_object_get(then, "cases"), now);
         if (old == NULL)
         {
-            printf("%-32s not in the baseline\n", name);
+            printf("%-36s not in the baseline\n", name);
+            ++num_missing;
             continue;
         }
         const double ratio = json_number_value(json_object_get(now, "core_seconds")) /
                              json_number_value(json_object_get(old, "core_seconds"));
-        printf("%-32s %6.3f of the baseline; spread %.0f %% now, %.0f %% then\n", name, ratio,
-               100 * json_number_value(json_object_get(now, "spread")),
-               100 * json_number_value(json_object_get(old, "spread")));
+        char texts[2][32];
+        printf("%-36s %6.3f of the baseline; spread %s now, %s then\n", name, ratio,
+               noise_text(now, texts[0], sizeof texts[0]), noise_text(old, texts[1], sizeof texts[1]));
     }
+    return num_missing;
 }
 
-scree_status scree_bench_compare(const scree_bench *bench, const char *path)
+scree_status scree_bench_read_baseline(const scree_bench_request *request, json_t **baseline, scree_report *report)
 {
     json_error_t fault;
-    json_t *baseline = json_load_file(path, 0, &fault);
-    if (baseline == NULL)
+    const char *path = request->baseline;
+    json_t *file = json_load_file(path, 0, &fault);
+    if (file == NULL)
     {
-        scree_report_add(bench->report, "%s: %s (line %d)", path, fault.text, fault.line);
+        if (fault.line > 0) scree_report_add(report, "--baseline %s, line %d: %s", path, fault.line, fault.text);
+        else scree_report_add(report, "--baseline %s: %s", path, fault.text);
         return SCREE_READ_FAILED;
     }
     // a file of one benchmark, or of several by name
-    const json_t *then = json_object_get(baseline, bench->request->name);
-    if (then == NULL) then = baseline;
-    const json_t *machine = json_object_get(then, "machine"), *of = json_object_get(then, "bench");
-    const char *processor = json_string_value(json_object_get(machine, "processor"));
-    if (!json_is_array(json_object_get(then, "cases")) || processor == NULL || !json_is_string(of) ||
-        strcmp(json_string_value(of), bench->request->name) != 0)
-    {
-        scree_report_add(bench->report, "%s: no result of scree bench %s; make one with --json", path,
-                         bench->request->name);
-        json_decref(baseline);
-        return SCREE_INVALID_INPUT;
-    }
+    json_t *then = json_object_get(file, request->name);
+    *baseline = json_incref(then != NULL ? then : file);
+    json_decref(file);
+    const json_t *of = json_object_get(*baseline, "bench"), *machine = json_object_get(*baseline, "machine");
+    if (json_is_array(json_object_get(*baseline, "cases")) && json_is_string(json_object_get(machine, "processor")) &&
+        json_is_string(of) && strcmp(json_string_value(of), request->name) == 0)
+        return SCREE_OK;
+    scree_report_add(report, "--baseline %s: no result of scree bench %s; make one with --json", path, request->name);
+    json_decref(*baseline);
+    *baseline = NULL;
+    return SCREE_INVALID_INPUT;
+}
+
+void scree_bench_compare(const scree_bench *bench, const json_t *baseline)
+{
+    const json_t *machine = json_object_get(baseline, "machine"), *options = json_object_get(baseline, "options");
     json_t *here = scree_bench_machine();
-    printf("\nbaseline of %s\n", processor);
+    printf("\nbaseline of %s, made by: scree bench %s", json_string_value(json_object_get(machine, "processor")),
+           bench->request->name);
+    size_t k;
+    const json_t *word;
+    json_array_foreach(options, k, word) printf(" %s", json_string_value(word));
+    putchar('\n');
     if (!json_equal(machine, here)) printf("  made on another machine, or with another compiler\n");
     json_decref(here);
-    print_ratios(bench, then);
-    json_decref(baseline);
-    return SCREE_OK;
+    const int num_missing = print_ratios(bench, baseline);
+    if (num_missing > 0)
+        printf(
+            "%d of %zu not in the baseline: compare with the options that it was made by, given above, or make one of "
+            "your own with --json\n",
+            num_missing, json_array_size(bench->cases));
 }

@@ -35,6 +35,7 @@ const scree_bench_column scree_bench_step_columns[] = {
     {"particle_steps_per_second", "p.steps/s", 1, 0},
     {"spread", "spread %", 100, 0},
     {"times_as_long", "times as long", 1, 3},
+    {"ratio_spread", "its spread %", 100, 0},
 };
 const int scree_bench_num_step_columns = sizeof scree_bench_step_columns / sizeof *scree_bench_step_columns;
 
@@ -52,63 +53,35 @@ static scree_status run_steps(scree_simulation *s, const scree_bench_request *re
     return status;
 }
 
-/// Seconds of each repetition, whole and per stage, per step.
-typedef struct step_samples
-{
-    double *core, *wall;                                                 ///< (num)
-    double *stage_core[SCREE_NUM_STAGES], *stage_wall[SCREE_NUM_STAGES]; ///< (num)
-    int num;
-} step_samples;
-
-static void destroy_samples(step_samples *samples) { free(samples->core); }
-
-static bool create_samples(step_samples *samples, int num)
+bool scree_bench_times_create(scree_bench_times *times, int num)
 {
     // one block: two rows for the whole, two for each stage
+    *times = (scree_bench_times){.num = num};
     double *block = calloc((size_t)(2 + 2 * SCREE_NUM_STAGES) * (size_t)num, sizeof *block);
     if (block == NULL) return false;
-    samples->num = num;
-    samples->core = block;
-    samples->wall = block + num;
+    times->core = block;
+    times->wall = block + num;
     for (int k = 0; k < SCREE_NUM_STAGES; ++k)
     {
-        samples->stage_core[k] = block + (2 + 2 * k) * num;
-        samples->stage_wall[k] = block + (3 + 2 * k) * num;
+        times->stage_core[k] = block + (2 + 2 * k) * num;
+        times->stage_wall[k] = block + (3 + 2 * k) * num;
     }
     return true;
 }
 
-static scree_status measure(scree_simulation *s, const scree_bench_request *request, step_samples *samples,
-                            scree_report *report)
+void scree_bench_times_destroy(scree_bench_times *times)
 {
-    const double num_steps = (double)request->steps;
-    scree_status status = run_steps(s, request, WARM_UP_STEPS, report);
-    for (int r = 0; r < samples->num && status == SCREE_OK; ++r)
+    free(times->core);
+    *times = (scree_bench_times){0};
+}
+
+void scree_bench_times_set_stages(scree_bench_times *times, int r, const scree_stage_times *stages, double share)
+{
+    for (int k = 0; k < SCREE_NUM_STAGES; ++k)
     {
-        scree_stage_times times = {{0}, {0}};
-        // the clock of a GPU waits after each stage, and steps are not recorded: stages are measured apart from the
-        // whole
-        const bool is_on_gpu = s->there != NULL;
-        if (!is_on_gpu) scree_simulation_time_stages(s, &times);
-        const double core = scree_bench_core_seconds(), wall = scree_bench_wall_seconds();
-        status = run_steps(s, request, request->steps, report);
-        samples->core[r] = (scree_bench_core_seconds() - core) / num_steps;
-        samples->wall[r] = (scree_bench_wall_seconds() - wall) / num_steps;
-        // while a GPU works the processor's own time says nothing
-        if (is_on_gpu)
-        {
-            samples->core[r] = samples->wall[r];
-            scree_simulation_time_stages(s, &times);
-            if (status == SCREE_OK) status = run_steps(s, request, request->steps, report);
-        }
-        scree_simulation_time_stages(s, NULL);
-        for (int k = 0; k < SCREE_NUM_STAGES; ++k)
-        {
-            samples->stage_core[k][r] = times.core[k] / num_steps;
-            samples->stage_wall[k][r] = times.wall[k] / num_steps;
-        }
+        times->stage_core[k][r] = stages->core[k] * share;
+        times->stage_wall[k][r] = stages->wall[k] * share;
     }
-    return status;
 }
 
 static double median_of(double *values, int num)
@@ -118,22 +91,69 @@ static double median_of(double *values, int num)
     return scree_bench_median(samples);
 }
 
-static json_t *describe_stages(step_samples *samples, double num_contacts)
+void scree_bench_times_describe(scree_bench_times *times, double num_contacts, json_t *measured)
 {
-    json_t *stages = json_object();
+    json_t *stages = json_object(), *turns = json_array();
+    for (int r = 0; r < times->num; ++r) json_array_append_new(turns, json_real(times->core[r]));
+    json_object_set_new(measured, "core_seconds_of_turns", turns);
     for (int k = 0; k < SCREE_NUM_STAGES; ++k)
     {
-        const double core = median_of(samples->stage_core[k], samples->num);
-        const double wall = median_of(samples->stage_wall[k], samples->num);
+        const double core = median_of(times->stage_core[k], times->num);
+        const double wall = median_of(times->stage_wall[k], times->num);
         json_object_set_new(stages, scree_stage_name((scree_stage)k),
                             json_pack("{s:f, s:f, s:f}", "core_seconds", core, "wall_seconds", wall,
                                       "core_us_per_contact", num_contacts > 0 ? 1e6 * core / num_contacts : 0));
     }
-    return stages;
+    json_object_set_new(measured, "core_seconds", json_real(median_of(times->core, times->num)));
+    json_object_set_new(measured, "wall_seconds", json_real(median_of(times->wall, times->num)));
+    json_object_set_new(measured, "repetitions", json_integer(times->num));
+    scree_bench_set_noise(measured, "spread", (scree_bench_samples){times->core, times->num});
+    json_object_set_new(measured, "stages", stages);
 }
 
-/// What the plan says of one item, and what the whole process takes.
-static json_t *describe_memory(const scree_simulation *s)
+/// One repetition, number r.
+static scree_status measure_once(const scree_bench_way *way, const scree_bench_request *request,
+                                 scree_bench_times *times, int r, scree_report *report)
+{
+    scree_simulation *s = way->simulation;
+    omp_set_num_threads(way->threads);
+    const double num_steps = (double)request->steps;
+    const int64_t searches = s->counters.num_rebuilds;
+    scree_stage_times stages = {{0}, {0}};
+    // the clock of a GPU waits after each stage, and steps are not recorded: stages are measured apart from the whole
+    const bool is_on_gpu = s->there != NULL;
+    if (!is_on_gpu) scree_simulation_time_stages(s, &stages);
+    const double core = scree_bench_core_seconds(), wall = scree_bench_wall_seconds();
+    scree_status status = run_steps(s, request, request->steps, report);
+    times->core[r] = (scree_bench_core_seconds() - core) / num_steps;
+    times->wall[r] = (scree_bench_wall_seconds() - wall) / num_steps;
+    times->num_searches += s->counters.num_rebuilds - searches;
+    // while a GPU works the processor's own time says nothing
+    if (is_on_gpu)
+    {
+        times->core[r] = times->wall[r];
+        scree_simulation_time_stages(s, &stages);
+        if (status == SCREE_OK) status = run_steps(s, request, request->steps, report);
+    }
+    scree_simulation_time_stages(s, NULL);
+    scree_bench_times_set_stages(times, r, &stages, 1 / num_steps);
+    return status;
+}
+
+/// All repetitions, of the ways in turn, so that they meet the same state of the machine.
+static scree_status measure(const scree_bench_way *ways, int num_ways, const scree_bench_request *request,
+                            scree_bench_times *times, scree_report *report)
+{
+    scree_status status = SCREE_OK;
+    for (int w = 0; w < num_ways && status == SCREE_OK; ++w)
+        status = run_steps(ways[w].simulation, request, WARM_UP_STEPS, report);
+    for (int r = 0; r < times->num && status == SCREE_OK; ++r)
+        for (int w = 0; w < num_ways && status == SCREE_OK; ++w)
+            status = measure_once(ways + w, request, times + w, r, report);
+    return status;
+}
+
+json_t *scree_bench_memory(const scree_simulation *s)
 {
     const scree_plan_bytes bytes = scree_simulation_plan_bytes(s);
     const struct mallinfo2 info = mallinfo2();
@@ -144,49 +164,80 @@ static json_t *describe_memory(const scree_simulation *s)
                      (json_int_t)(info.uordblks + info.hblkhd), "peak_resident", (json_int_t)usage.ru_maxrss * 1024);
 }
 
-static json_t *describe(scree_simulation *s, const scree_bench_request *request, step_samples *samples,
-                        double num_searches)
+static json_t *describe(const scree_bench_way *way, const scree_bench_request *request, scree_bench_times *times)
 {
     // what the host has of it is as old as the last observation
+    scree_simulation *s = way->simulation;
     const scree_simulation *there = scree_simulation_there(s);
     const int64_t num_pairs = there->broad_phase.num_pairs, num_contacts = there->contacts.num_contacts;
     const double particles = (double)s->particles.num_particles, pairs = (double)num_pairs;
     const double contacts = (double)num_contacts;
-    scree_bench_samples core = {samples->core, samples->num};
-    scree_bench_sort(core);
-    const double middle = scree_bench_median(core), wall = median_of(samples->wall, samples->num);
-    json_t *stages = describe_stages(samples, contacts);
+    json_t *measured = json_pack(
+        "{s:i, s:I, s:I, s:I, s:f, s:f, s:I, s:I, s:f, s:o}", "threads", way->threads, "particles",
+        (json_int_t)s->particles.num_particles, "pairs", (json_int_t)num_pairs, "contacts", (json_int_t)num_contacts,
+        "pairs_per_particle", pairs / particles, "contacts_per_particle", contacts / particles, "steps",
+        (json_int_t)request->steps, "search_every", (json_int_t)request->search_every, "searches_per_step",
+        (double)times->num_searches / (double)(request->steps * times->num), "bytes", scree_bench_memory(s));
+    scree_bench_times_describe(times, contacts, measured);
+    const double core = json_number_value(json_object_get(measured, "core_seconds"));
+    json_object_set_new(measured, "core_us_per_contact", json_real(contacts > 0 ? 1e6 * core / contacts : 0));
+    json_object_set_new(measured, "core_ns_per_pair", json_real(pairs > 0 ? 1e9 * core / pairs : 0));
+    json_object_set_new(measured, "core_ns_per_particle", json_real(1e9 * core / particles));
+    json_object_set_new(measured, "particle_steps_per_second",
+                        json_real(particles / json_number_value(json_object_get(measured, "wall_seconds"))));
     double rest = 0;
     static const scree_stage small[] = {SCREE_STAGE_PREDICT, SCREE_STAGE_TRAVEL, SCREE_STAGE_CORRECT,
                                         SCREE_STAGE_OTHER};
+    const json_t *stages = json_object_get(measured, "stages");
     for (size_t k = 0; k < sizeof small / sizeof *small; ++k)
         rest += json_number_value(
             json_object_get(json_object_get(stages, scree_stage_name(small[k])), "core_us_per_contact"));
-    json_t *measured =
-        json_pack("{s:i, s:I, s:I, s:I, s:f, s:f, s:I, s:i, s:f, s:f, s:f, s:f}", "threads", omp_get_max_threads(),
-                  "particles", (json_int_t)s->particles.num_particles, "pairs", (json_int_t)num_pairs, "contacts",
-                  (json_int_t)num_contacts, "pairs_per_particle", pairs / particles, "contacts_per_particle",
-                  contacts / particles, "steps", (json_int_t)request->steps, "repetitions", samples->num,
-                  "searches_per_step", num_searches / (double)(request->steps * samples->num), "core_seconds", middle,
-                  "wall_seconds", wall, "spread", scree_bench_spread(core));
-    json_object_set_new(measured, "core_us_per_contact", json_real(contacts > 0 ? 1e6 * middle / contacts : 0));
-    json_object_set_new(measured, "core_ns_per_pair", json_real(pairs > 0 ? 1e9 * middle / pairs : 0));
-    json_object_set_new(measured, "core_ns_per_particle", json_real(1e9 * middle / particles));
-    json_object_set_new(measured, "particle_steps_per_second", json_real(particles / wall));
     json_object_set_new(measured, "rest_us_per_contact", json_real(rest));
-    json_object_set_new(measured, "stages", stages);
-    json_object_set_new(measured, "bytes", describe_memory(s));
     return measured;
 }
 
-json_t *scree_bench_steps(scree_simulation *simulation, const scree_bench_request *request, scree_report *report)
+/// Median and spread of the ratios of times of two ways, turn by turn, so before the times are sorted. False if memory
+/// is out.
+static bool find_ratios(const double *times, const double *reference, int num, double *median_and_spread)
 {
-    step_samples samples;
-    if (!create_samples(&samples, (int)request->repetitions)) return NULL;
-    json_t *measured = NULL;
-    const int64_t before = simulation->counters.num_rebuilds;
-    if (measure(simulation, request, &samples, report) == SCREE_OK)
-        measured = describe(simulation, request, &samples, (double)(simulation->counters.num_rebuilds - before));
-    destroy_samples(&samples);
-    return measured;
+    double *ratios = malloc((size_t)num * sizeof *ratios);
+    if (ratios == NULL) return false;
+    for (int r = 0; r < num; ++r) ratios[r] = times[r] / reference[r];
+    const scree_bench_samples samples = {ratios, num};
+    scree_bench_sort(samples);
+    median_and_spread[0] = scree_bench_median(samples);
+    median_and_spread[1] = scree_bench_spread(samples);
+    free(ratios);
+    return true;
+}
+
+scree_status scree_bench_steps(const scree_bench_way *ways, int num_ways, const scree_bench_request *request,
+                               json_t **cases, scree_report *report)
+{
+    scree_bench_times times[2] = {{0}, {0}};
+    bool has_room = true;
+    for (int w = 0; w < num_ways; ++w)
+        has_room = scree_bench_times_create(times + w, (int)request->repetitions) && has_room;
+    scree_status status = has_room ? measure(ways, num_ways, request, times, report) : SCREE_OUT_OF_MEMORY;
+    omp_set_num_threads((int)request->threads);
+    double ratio[2];
+    if (status == SCREE_OK && num_ways == 2)
+    {
+        // threads share the work, and what they save is elapsed time
+        const bool is_wall = ways[0].threads != ways[1].threads;
+        if (!find_ratios(is_wall ? times[1].wall : times[1].core, is_wall ? times[0].wall : times[0].core, times[1].num,
+                         ratio))
+            status = SCREE_OUT_OF_MEMORY;
+    }
+    for (int w = 0; w < num_ways; ++w)
+    {
+        cases[w] = status == SCREE_OK ? describe(ways + w, request, times + w) : NULL;
+        scree_bench_times_destroy(times + w);
+    }
+    if (status == SCREE_OK && num_ways == 2)
+    {
+        json_object_set_new(cases[1], "times_as_long", json_real(ratio[0]));
+        if (request->repetitions > 1) json_object_set_new(cases[1], "ratio_spread", json_real(ratio[1]));
+    }
+    return status;
 }

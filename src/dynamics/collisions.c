@@ -8,6 +8,11 @@
 
 #include <stdlib.h>
 
+enum
+{
+    PIECE = 256 ///< ended collisions brought to the host at a time
+};
+
 scree_status scree_spectrum_create(scree_spectrum *spectrum, int64_t num_rows)
 {
     const size_t num = (size_t)num_rows + 1;
@@ -141,8 +146,9 @@ static scree_status make_room(scree_averages *averages, scree_device *device, in
     return status;
 }
 
-/// The collisions that this step found ended are put together, in the order of the contacts, and come to the host.
-static scree_status count_ended(scree_simulation *simulation, scree_simulation *there)
+/// The collisions that this step found ended are put together, in the order of the contacts, and come to the host piece
+/// by piece: there are few, and a step takes no memory. One thread counts them, in this order.
+static void count_ended(scree_simulation *simulation, scree_simulation *there)
 {
     scree_averages *scratch = &there->averages;
     const scree_collisions *old = &scratch->old_collisions;
@@ -160,15 +166,16 @@ static scree_status count_ended(scree_simulation *simulation, scree_simulation *
     scree_scan_on(&scratch->scan, args.places, num_old);
     int64_t num = 0;
     scree_device_read(device, &num, args.places + num_old, sizeof num);
-    if (num == 0) return SCREE_OK;
-    scree_ended_collision *ended = calloc((size_t)num, sizeof *ended);
-    if (ended == NULL) return SCREE_OUT_OF_MEMORY;
+    if (num == 0) return;
     args.ended = scratch->ended;
     scree_ended_collisions_launch_on(device, args, num_old);
-    scree_device_read(device, ended, scratch->ended, (size_t)num * sizeof *ended);
-    for (int64_t k = 0; k < num; ++k) count(&simulation->averages, &simulation->averages.spectrum, ended + k);
-    free(ended);
-    return SCREE_OK;
+    scree_ended_collision piece[PIECE];
+    for (int64_t first = 0; first < num; first += PIECE)
+    {
+        const int64_t num_here = num - first < PIECE ? num - first : PIECE;
+        scree_device_read(device, piece, scratch->ended + first, (size_t)num_here * sizeof *piece);
+        for (int64_t k = 0; k < num_here; ++k) count(&simulation->averages, &simulation->averages.spectrum, piece + k);
+    }
 }
 
 scree_status scree_update_collisions(scree_simulation *simulation)
@@ -195,5 +202,6 @@ scree_status scree_update_collisions(scree_simulation *simulation)
     args.normal = averages->collisions.normal;
     args.tangential = averages->collisions.tangential;
     scree_collision_launch_on(there->device, args, num_contacts);
-    return count_ended(simulation, there);
+    count_ended(simulation, there);
+    return SCREE_OK;
 }

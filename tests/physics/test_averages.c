@@ -25,6 +25,28 @@ static double sum_of(const double *values, int64_t num)
     return sum;
 }
 
+/// On more threads each does a layer of the grid: the same bits as a single one.
+static void check_threads_sample_alike(const scree_simulation *s, const scree_grid_sums *alone)
+{
+    static const int num_threads[] = {2, 7};
+    const int before = omp_get_max_threads();
+    for (int n = 0; n < 2; ++n)
+    {
+        scree_grid_sums sums;
+        SCREE_CHECK_INT(scree_grid_sums_create(&sums, alone->num_cells), SCREE_OK);
+        omp_set_num_threads(num_threads[n]);
+        scree_grid_add_sample(s, &sums);
+        const size_t size = (size_t)sums.num_cells * sizeof(double);
+        SCREE_CHECK(memcmp(sums.volume, alone->volume, size) == 0);
+        SCREE_CHECK(memcmp(sums.mass, alone->mass, size) == 0);
+        SCREE_CHECK(memcmp(sums.momentum, alone->momentum, 3 * size) == 0);
+        SCREE_CHECK(memcmp(sums.speed, alone->speed, size) == 0);
+        SCREE_CHECK(memcmp(sums.square, alone->square, size) == 0);
+        scree_grid_sums_destroy(&sums);
+    }
+    omp_set_num_threads(before);
+}
+
 /// Whatever the sizes of particles and cells, the cells share out the volume, mass and momentum of the particles.
 static void test_cells_hold_all_that_the_particles_bring(void)
 {
@@ -49,7 +71,11 @@ static void test_cells_hold_all_that_the_particles_bring(void)
         scene_run_start(&run, text);
         if (run.simulation == NULL) return;
         scree_grid_sums *sums = &run.simulation->averages.grid;
+        const int before = omp_get_max_threads();
+        omp_set_num_threads(1);
         scree_grid_add_sample(run.simulation, sums);
+        omp_set_num_threads(before);
+        check_threads_sample_alike(run.simulation, sums);
         const scree_particles *p = &run.simulation->particles;
         double volume = 0, mass = 0, momentum = 0, square = 0, found = 0;
         for (int64_t i = 0; i < p->num_particles; ++i)

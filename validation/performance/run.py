@@ -186,8 +186,8 @@ def packing_table(results):
 
 
 def savings_table(results):
-    rows = [[c["name"], f"{c['times_as_long']:.2f}", f"{100 * c['spread']:.0f} %"]
-            for key in ("savings", "sphere_savings") for c in results[key]["cases"] if "times_as_long" in c]
+    rows = [[c["name"], f"{c['times_as_long']:.2f}", f"{100 * c['ratio_spread']:.0f} %"]
+            for key in ("savings", "sphere_savings") for c in results[key]["cases"] if " - " in c["name"]]
     return table(["without", "times as long", "spread of the ratio"], rows)
 
 

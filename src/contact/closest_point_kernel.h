@@ -28,84 +28,107 @@ typedef struct scree_closest_point
     int32_t part; ///< scree_triangle_part
 } scree_closest_point;
 
-/// Twice the area times the outward normal of triangle t.
-SCREE_FN scree_vec3 scree_triangle_double_area(const scree_shape_view *mesh, int32_t t)
+/// A triangle with its unit normal.
+typedef struct scree_triangle_place
+{
+    scree_vec3 a, b, c, normal;
+} scree_triangle_place;
+
+/// The nearest point without the triangle, all numbers of one kind for lanes.
+typedef struct scree_nearest_part
+{
+    scree_vec3 offset;
+    scree_real squared;
+    scree_real part; ///< scree_triangle_part
+} scree_nearest_part;
+
+SCREE_FN scree_triangle_place scree_place_of_triangle(const scree_shape_view *mesh, int32_t t)
 {
     const int32_t *v = mesh->triangles[t].v;
-    const scree_vec3 a = mesh->vertices[v[0]];
-    return scree_vec3_cross(scree_vec3_sub(mesh->vertices[v[1]], a), scree_vec3_sub(mesh->vertices[v[2]], a));
+    scree_triangle_place place;
+    place.a = mesh->vertices[v[0]];
+    place.b = mesh->vertices[v[1]];
+    place.c = mesh->vertices[v[2]];
+    place.normal = mesh->normals[t];
+    return place;
 }
 
-SCREE_FN scree_vec3 scree_triangle_normal(const scree_shape_view *mesh, int32_t t)
+/// Where the nearest point lies if it does not lie in the face: `start` less `along`/`whole` of `edge`.
+typedef struct scree_nearest_choice
 {
-    const scree_vec3 area = scree_triangle_double_area(mesh, t);
-    return scree_vec3_scale(area, 1 / scree_vec3_length(area));
+    scree_vec3 start, edge;
+    scree_real along, whole, part;
+} scree_nearest_choice;
+
+/// The one or the other choice, number by number, so that lanes can choose.
+SCREE_FN scree_nearest_choice scree_choose(bool is_chosen, int32_t part, scree_vec3 start, scree_vec3 edge,
+                                           scree_real along, scree_real whole, scree_nearest_choice other)
+{
+    scree_nearest_choice c;
+    c.start.x = is_chosen ? start.x : other.start.x;
+    c.start.y = is_chosen ? start.y : other.start.y;
+    c.start.z = is_chosen ? start.z : other.start.z;
+    c.edge.x = is_chosen ? edge.x : other.edge.x;
+    c.edge.y = is_chosen ? edge.y : other.edge.y;
+    c.edge.z = is_chosen ? edge.z : other.edge.z;
+    c.along = is_chosen ? along : other.along;
+    c.whole = is_chosen ? whole : other.whole;
+    c.part = is_chosen ? (scree_real)part : other.part;
+    return c;
 }
 
-SCREE_FN scree_closest_point scree_closest_at_vertex(scree_vec3 to_centre, int32_t k)
+/// The nearest point of a triangle, its part decided by the projections on its edges. Exactly above an edge or a vertex
+/// the face counts. Without branches, for lanes: which part it is cannot be foreseen.
+SCREE_FN scree_nearest_part scree_closest_part(scree_triangle_place place, scree_vec3 centre)
 {
-    scree_closest_point closest;
-    closest.offset = to_centre;
-    closest.squared = scree_vec3_dot(to_centre, to_centre);
-    closest.triangle = -1;
-    closest.part = SCREE_PART_VERTEX + k;
-    return closest;
-}
-
-/// On the edge from a to b; `to_centre` starts at a.
-SCREE_FN scree_closest_point scree_closest_at_edge(scree_vec3 to_centre, scree_vec3 edge, scree_real share, int32_t k)
-{
-    scree_closest_point closest = scree_closest_at_vertex(scree_vec3_add_scaled(to_centre, edge, -share), k);
-    closest.part = SCREE_PART_EDGE + k;
-    return closest;
-}
-
-/// The nearest point of triangle t, its part decided by the projections on its edges. Exactly above an edge or a vertex
-/// the face counts.
-SCREE_FN scree_closest_point scree_closest_part(const scree_shape_view *mesh, int32_t t, scree_vec3 centre)
-{
-    const int32_t *v = mesh->triangles[t].v;
-    const scree_vec3 a = mesh->vertices[v[0]], b = mesh->vertices[v[1]], c = mesh->vertices[v[2]];
-    const scree_vec3 ab = scree_vec3_sub(b, a), ac = scree_vec3_sub(c, a);
-    const scree_vec3 from_a = scree_vec3_sub(centre, a);
+    const scree_vec3 ab = scree_vec3_sub(place.b, place.a), ac = scree_vec3_sub(place.c, place.a);
+    const scree_vec3 bc = scree_vec3_sub(place.c, place.b);
+    const scree_vec3 from_a = scree_vec3_sub(centre, place.a);
+    const scree_vec3 from_b = scree_vec3_sub(centre, place.b);
+    const scree_vec3 from_c = scree_vec3_sub(centre, place.c);
     const scree_real d1 = scree_vec3_dot(ab, from_a), d2 = scree_vec3_dot(ac, from_a);
-    if (d1 <= 0 && d2 <= 0 && d1 + d2 < 0) return scree_closest_at_vertex(from_a, 0);
-
-    const scree_vec3 from_b = scree_vec3_sub(centre, b);
     const scree_real d3 = scree_vec3_dot(ab, from_b), d4 = scree_vec3_dot(ac, from_b);
-    if (d3 >= 0 && d4 <= d3 && (d3 > 0 || d4 < 0)) return scree_closest_at_vertex(from_b, 1);
-    if (d1 * d4 - d3 * d2 < 0 && d1 >= 0 && d3 <= 0) return scree_closest_at_edge(from_a, ab, d1 / (d1 - d3), 0);
-
-    const scree_vec3 from_c = scree_vec3_sub(centre, c);
     const scree_real d5 = scree_vec3_dot(ab, from_c), d6 = scree_vec3_dot(ac, from_c);
-    if (d6 >= 0 && d5 <= d6 && (d6 > 0 || d5 < 0)) return scree_closest_at_vertex(from_c, 2);
-    if (d5 * d2 - d1 * d6 < 0 && d2 >= 0 && d6 <= 0) return scree_closest_at_edge(from_a, ac, d2 / (d2 - d6), 2);
-    if (d3 * d6 - d5 * d4 < 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
-        return scree_closest_at_edge(from_b, scree_vec3_sub(c, b), (d4 - d3) / ((d4 - d3) + (d5 - d6)), 1);
-
+    const bool is_a = (d1 <= 0) & (d2 <= 0) & (d1 + d2 < 0);
+    const bool is_b = (d3 >= 0) & (d4 <= d3) & ((d3 > 0) | (d4 < 0));
+    const bool is_ab = (d1 * d4 - d3 * d2 < 0) & (d1 >= 0) & (d3 <= 0);
+    const bool is_c = (d6 >= 0) & (d5 <= d6) & ((d6 > 0) | (d5 < 0));
+    const bool is_ac = (d5 * d2 - d1 * d6 < 0) & (d2 >= 0) & (d6 <= 0);
+    const bool is_bc = (d3 * d6 - d5 * d4 < 0) & (d4 - d3 >= 0) & (d5 - d6 >= 0);
     // through the height over the plane: nothing is lost far from the corners
-    const scree_vec3 normal = scree_triangle_normal(mesh, t);
-    const scree_real height = scree_vec3_dot(normal, from_a);
-    scree_closest_point closest = scree_closest_at_vertex(scree_vec3_scale(normal, height), 0);
-    closest.part = SCREE_PART_FACE;
-    return closest;
+    const scree_vec3 above = scree_vec3_scale(place.normal, scree_vec3_dot(place.normal, from_a));
+    // the last choice stands
+    scree_nearest_choice c = {above, ab, 0, 1, SCREE_PART_FACE};
+    c = scree_choose(is_bc, SCREE_PART_EDGE + 1, from_b, bc, d4 - d3, (d4 - d3) + (d5 - d6), c);
+    c = scree_choose(is_ac, SCREE_PART_EDGE + 2, from_a, ac, d2, d2 - d6, c);
+    c = scree_choose(is_c, SCREE_PART_VERTEX + 2, from_c, ac, 0, 1, c);
+    c = scree_choose(is_ab, SCREE_PART_EDGE, from_a, ab, d1, d1 - d3, c);
+    c = scree_choose(is_b, SCREE_PART_VERTEX + 1, from_b, ab, 0, 1, c);
+    c = scree_choose(is_a, SCREE_PART_VERTEX, from_a, ab, 0, 1, c);
+    scree_nearest_part nearest;
+    nearest.offset = scree_vec3_add_scaled(c.start, c.edge, -(c.along / c.whole));
+    nearest.squared = scree_vec3_dot(nearest.offset, nearest.offset);
+    nearest.part = c.part;
+    return nearest;
 }
 
 SCREE_FN scree_closest_point scree_closest_on_triangle(const scree_shape_view *mesh, int32_t t, scree_vec3 centre)
 {
-    scree_closest_point closest = scree_closest_part(mesh, t, centre);
+    const scree_nearest_part nearest = scree_closest_part(scree_place_of_triangle(mesh, t), centre);
+    scree_closest_point closest;
+    closest.offset = nearest.offset;
+    closest.squared = nearest.squared;
     closest.triangle = t;
+    closest.part = (int32_t)nearest.part;
     return closest;
 }
 
-/// Bound of what rounding does to the distance of a centre that is found for triangle t. Its normal and the sides of
+/// Bound of what rounding does to the distance of a centre that is found for a triangle. Its normal and the sides of
 /// its edges come from the difference of products of lengths over the area, which makes slivers the worst.
-SCREE_FN scree_real scree_closest_rounding(const scree_shape_view *mesh, int32_t t, scree_vec3 centre)
+SCREE_FN scree_real scree_closest_rounding(scree_triangle_place place, scree_vec3 centre)
 {
-    const int32_t *v = mesh->triangles[t].v;
-    const scree_vec3 a = mesh->vertices[v[0]];
-    const scree_vec3 ab = scree_vec3_sub(mesh->vertices[v[1]], a), ac = scree_vec3_sub(mesh->vertices[v[2]], a);
-    const scree_vec3 from_a = scree_vec3_sub(centre, a);
+    const scree_vec3 ab = scree_vec3_sub(place.b, place.a), ac = scree_vec3_sub(place.c, place.a);
+    const scree_vec3 from_a = scree_vec3_sub(centre, place.a);
     const scree_real squares = scree_vec3_dot(ab, ab) + scree_vec3_dot(ac, ac) + scree_vec3_dot(from_a, from_a);
     const scree_real double_area = scree_vec3_length(scree_vec3_cross(ab, ac));
     return 64 * SCREE_REAL_EPSILON * scree_sqrt(squares) * (squares / double_area);
@@ -135,7 +158,7 @@ SCREE_FN scree_approach scree_approach_of_edge(const scree_closest_point *closes
 
 SCREE_FN scree_vec3 scree_edge_outward(const scree_shape_view *mesh, int32_t t, int32_t k)
 {
-    return scree_vec3_add(scree_triangle_normal(mesh, t), scree_triangle_normal(mesh, mesh->neighbours[3 * t + k]));
+    return scree_vec3_add(mesh->normals[t], mesh->normals[mesh->neighbours[3 * t + k]]);
 }
 
 /// Position of vertex v in triangle t.
@@ -171,7 +194,7 @@ SCREE_FN scree_approach scree_approach_of(const scree_shape_view *mesh, const sc
     if (closest->part == SCREE_PART_FACE)
     {
         scree_approach approach;
-        approach.normal = scree_triangle_normal(mesh, closest->triangle);
+        approach.normal = mesh->normals[closest->triangle];
         approach.height = scree_vec3_dot(approach.normal, closest->offset);
         approach.rank = 0;
         return approach;
@@ -207,7 +230,8 @@ SCREE_FN bool scree_is_local_minimum(const scree_shape_view *mesh, scree_vec3 ce
 }
 
 /// Leaves of the mesh's tree whose triangles are nearer than `radius`, or would be found nearer within rounding, in the
-/// order of the tree. Returns how many there are; no more than max_leaves of them are written.
+/// order of the tree. Returns how
+/// many there are; no more than max_leaves of them are written.
 SCREE_FN int32_t scree_leaves_within(const scree_shape_view *mesh, scree_vec3 centre, scree_real radius,
                                      int32_t *leaves, int32_t max_leaves)
 {
@@ -219,9 +243,9 @@ SCREE_FN int32_t scree_leaves_within(const scree_shape_view *mesh, scree_vec3 ce
         const bool is_met = scree_box_distance_squared(node->box, centre) <= radius * radius;
         k = is_met && node->first_child >= 0 ? node->first_child : node->escape;
         if (!is_met || node->first_child >= 0) continue;
-        const int32_t t = -1 - node->first_child;
-        const scree_real within = radius + scree_closest_rounding(mesh, t, centre);
-        if (scree_closest_on_triangle(mesh, t, centre).squared > within * within) continue;
+        const scree_triangle_place place = scree_place_of_triangle(mesh, -1 - node->first_child);
+        const scree_real within = radius + scree_closest_rounding(place, centre);
+        if (scree_closest_part(place, centre).squared > within * within) continue;
         if (num < max_leaves) leaves[num] = here;
         ++num;
     }

@@ -117,6 +117,7 @@ SCREE_FN scree_real scree_share_lost(const scree_sphere_contact *i, const scree_
 /// Weights of the contacts of one sphere with one mesh; those that have none left are removed.
 SCREE_FN int32_t scree_share_sphere_contacts(scree_sphere_contact *contacts, int32_t num, scree_real radius)
 {
+    if (num < 2) return num; // with the weight 1
     for (int32_t i = 0; i < num; ++i)
     {
         scree_real lost = 0;
@@ -153,21 +154,73 @@ SCREE_FN scree_sphere_on_mesh scree_sphere_to_mesh(scree_vec3 centre, scree_real
     return sphere;
 }
 
+/// Contacts of a sphere with a mesh while the triangles are gone through.
+typedef struct scree_mesh_search
+{
+    scree_sphere_contact *contacts; ///< (max_contacts)
+    int32_t num, max_contacts;
+    scree_real outside, inside; ///< [m^2] to the nearest points seen from outside and from inside, unscaled
+    scree_approach deepest;     ///< that of the latter
+} scree_mesh_search;
+
+SCREE_FN scree_mesh_search scree_mesh_search_start(scree_sphere_on_mesh sphere, scree_sphere_contact *contacts,
+                                                   int32_t max_contacts)
+{
+    scree_mesh_search search;
+    search.contacts = contacts;
+    search.num = 0;
+    search.max_contacts = max_contacts;
+    search.outside = search.inside = sphere.radius * sphere.radius;
+    search.deepest.normal = scree_vec3_zero();
+    search.deepest.height = 0;
+    search.deepest.rank = 0;
+    return search;
+}
+
+/// Takes up a local minimum below the radius.
+SCREE_FN void scree_mesh_search_meet(scree_mesh_search *search, const scree_shape_view *mesh, scree_real radius,
+                                     const scree_closest_point *closest)
+{
+    const scree_approach approach = scree_approach_of(mesh, closest);
+    if (approach.height > 0)
+    {
+        search->outside = scree_min(search->outside, closest->squared);
+        search->num = scree_add_sphere_contact(search->contacts, search->num, search->max_contacts, radius, approach);
+    }
+    else if (closest->squared < search->inside)
+    {
+        search->inside = closest->squared;
+        search->deepest = approach;
+    }
+}
+
+/// Returns the number of contacts; if that exceeds max_contacts, what is written is useless: search again with more
+/// room. *is_inside: the centre is inside the mesh's solid.
+SCREE_FN int32_t scree_mesh_search_end(scree_mesh_search *search, const scree_sphere_on_mesh *sphere, bool *is_inside)
+{
+    scree_sphere_contact *contacts = search->contacts;
+    int32_t num = search->num;
+    *is_inside = search->inside < search->outside;
+    if (*is_inside)
+        num = scree_add_sphere_contact(contacts, num, search->max_contacts, sphere->radius, search->deepest);
+    if (num > search->max_contacts) return num;
+    num = scree_share_sphere_contacts(contacts, num, sphere->radius);
+    for (int32_t c = 0; c < num; ++c)
+    {
+        contacts[c].normal = scree_mat3_apply(sphere->rotation, contacts[c].normal);
+        contacts[c].indentation = contacts[c].indentation * sphere->scale;
+    }
+    return num;
+}
+
 /// Contacts of a sphere with a posed mesh, of which what lies below these nodes of its tree, in its order, can be met;
-/// the root is enough. Returns their number; if that exceeds max_contacts, what is written is
-/// useless: call again with more room. *is_inside: the centre is inside the mesh's solid.
+/// the root is enough. Returns what scree_mesh_search_end() does.
 SCREE_FN int32_t scree_sphere_mesh_contacts(const scree_shape_view *mesh, scree_sphere_on_mesh sphere,
                                             const int32_t *nodes, int32_t num_nodes, scree_sphere_contact *contacts,
                                             int32_t max_contacts, bool *is_inside)
 {
     const scree_real squared_radius = sphere.radius * sphere.radius;
-    int32_t num = 0;
-    // the nearest points seen from outside and from inside
-    scree_real outside = squared_radius, inside = squared_radius;
-    scree_approach deepest;
-    deepest.normal = scree_vec3_zero();
-    deepest.height = 0;
-    deepest.rank = 0;
+    scree_mesh_search search = scree_mesh_search_start(sphere, contacts, max_contacts);
     int32_t n = 0, k = SCREE_LBVH_END, end = SCREE_LBVH_END;
     while (k != end || n < num_nodes)
     {
@@ -181,29 +234,10 @@ SCREE_FN int32_t scree_sphere_mesh_contacts(const scree_shape_view *mesh, scree_
         k = is_met && node->first_child >= 0 ? node->first_child : node->escape;
         if (!is_met || node->first_child >= 0) continue;
         const scree_closest_point closest = scree_closest_on_triangle(mesh, -1 - node->first_child, sphere.centre);
-        if (!(closest.squared < squared_radius) || !scree_is_local_minimum(mesh, sphere.centre, closest)) continue;
-        const scree_approach approach = scree_approach_of(mesh, &closest);
-        if (approach.height > 0)
-        {
-            outside = scree_min(outside, closest.squared);
-            num = scree_add_sphere_contact(contacts, num, max_contacts, sphere.radius, approach);
-        }
-        else if (closest.squared < inside)
-        {
-            inside = closest.squared;
-            deepest = approach;
-        }
+        if (closest.squared < squared_radius && scree_is_local_minimum(mesh, sphere.centre, closest))
+            scree_mesh_search_meet(&search, mesh, sphere.radius, &closest);
     }
-    *is_inside = inside < outside;
-    if (*is_inside) num = scree_add_sphere_contact(contacts, num, max_contacts, sphere.radius, deepest);
-    if (num > max_contacts) return num;
-    num = scree_share_sphere_contacts(contacts, num, sphere.radius);
-    for (int32_t c = 0; c < num; ++c)
-    {
-        contacts[c].normal = scree_mat3_apply(sphere.rotation, contacts[c].normal);
-        contacts[c].indentation = contacts[c].indentation * sphere.scale;
-    }
-    return num;
+    return scree_mesh_search_end(&search, &sphere, is_inside);
 }
 
 #endif

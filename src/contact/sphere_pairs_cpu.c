@@ -2,7 +2,6 @@
 
 SCREE_DEFINE_LAUNCH(scree_place_spheres)
 SCREE_DEFINE_LAUNCH_DYNAMIC(scree_sphere_mesh_near)
-SCREE_DEFINE_LAUNCH_DYNAMIC(scree_sphere_mesh_count)
 SCREE_DEFINE_LAUNCH(scree_sphere_mesh_write)
 SCREE_DEFINE_LAUNCH_DYNAMIC(scree_clump_clump_count)
 SCREE_DEFINE_LAUNCH(scree_clump_clump_write)

@@ -135,6 +135,22 @@ static scree_status map_support(scree_shape *shape)
     return SCREE_OK;
 }
 
+static scree_status find_normals(scree_shape *shape)
+{
+    const scree_mesh *mesh = &shape->mesh;
+    shape->normals = malloc(((size_t)mesh->num_triangles + 1) * sizeof *shape->normals);
+    if (shape->normals == NULL) return SCREE_OUT_OF_MEMORY;
+    for (int32_t t = 0; t < mesh->num_triangles; ++t)
+    {
+        const int32_t *v = mesh->triangles[t].v;
+        const scree_vec3 a = mesh->vertices[v[0]];
+        const scree_vec3 area =
+            scree_vec3_cross(scree_vec3_sub(mesh->vertices[v[1]], a), scree_vec3_sub(mesh->vertices[v[2]], a));
+        shape->normals[t] = scree_vec3_scale(area, 1 / scree_vec3_length(area));
+    }
+    return SCREE_OK;
+}
+
 static void fill_view(scree_shape *shape, bool is_convex)
 {
     const scree_mesh *mesh = &shape->mesh;
@@ -145,6 +161,7 @@ static void fill_view(scree_shape *shape, bool is_convex)
         .vertices = mesh->vertices,
         .triangles = mesh->triangles,
         .neighbours = shape->neighbours,
+        .normals = shape->normals,
         .tree = shape->tree.view,
         .wide_tree = shape->wide_tree.view,
         .support_map = shape->support_map,
@@ -174,6 +191,7 @@ scree_status scree_shape_create(scree_shape *shape, const scree_mesh *mesh, scre
     shape->neighbours = malloc((3 * (size_t)mesh->num_triangles + 1) * sizeof *shape->neighbours);
     if (shape->neighbours == NULL) status = SCREE_OUT_OF_MEMORY;
     if (status == SCREE_OK) status = scree_mesh_neighbours(&shape->mesh, shape->neighbours);
+    if (status == SCREE_OK) status = find_normals(shape);
     if (status == SCREE_OK && is_convex) status = join_flat_faces(shape, mesh);
     if (status == SCREE_OK) status = build_trees(shape);
     if (status == SCREE_OK && mesh->num_triangles >= SCREE_LARGE_SHAPE) status = map_support(shape);
@@ -212,6 +230,7 @@ void scree_shape_destroy(scree_shape *shape)
 {
     scree_mesh_destroy(&shape->mesh);
     free(shape->neighbours);
+    free(shape->normals);
     scree_lbvh_destroy(&shape->tree);
     scree_wide_tree_destroy(&shape->wide_tree);
     free(shape->support_map);

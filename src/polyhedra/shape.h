@@ -36,6 +36,7 @@ typedef struct scree_shape_view
     const scree_vec3 *vertices;      ///< (num_vertices)
     const scree_triangle *triangles; ///< (num_triangles)
     const int32_t *neighbours;       ///< (num_triangles, 3) triangle across edge (v[k], v[k+1])
+    const scree_vec3 *normals;       ///< (num_triangles) unit, outward
     scree_lbvh_view tree;            ///< over the boxes of the triangles
     scree_wide_tree_view wide_tree;  ///< the same for shapes of at least SCREE_LARGE_SHAPE triangles, else empty
     const float *support_map;        ///< (SCREE_SUPPORT_VALUES) of such shapes, else NULL
@@ -55,6 +56,7 @@ typedef struct scree_shape
 {
     scree_mesh mesh; ///< body frame
     int32_t *neighbours;
+    scree_vec3 *normals;
     scree_lbvh tree;
     scree_wide_tree wide_tree;
     float *support_map;

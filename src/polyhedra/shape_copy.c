@@ -1,7 +1,7 @@
 #include "polyhedra/shape_copy.h"
 
 #ifndef SCREE_SINGLE
-_Static_assert(sizeof(scree_shape_view) == 224, "copy the new array, and free it");
+_Static_assert(sizeof(scree_shape_view) == 232, "copy the new array, and free it");
 #endif
 
 /// Nodes of the trees of a shape: binary; wide, whose last level has one; and those of its lowest level.
@@ -24,6 +24,7 @@ static int64_t num_lowest_nodes(const scree_shape_view *view)
     X(vertices, view->num_vertices)                 \
     X(triangles, view->num_triangles)               \
     X(neighbours, 3 * (int64_t)view->num_triangles) \
+    X(normals, view->num_triangles)                 \
     X(tree.nodes, num_nodes(view))                  \
     X(wide_tree.nodes, num_wide_nodes(view))        \
     X(wide_tree.corners, num_lowest_nodes(view))    \

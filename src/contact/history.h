@@ -6,7 +6,7 @@
 #include "contact/history_kernel.h"
 #include "core/launch_cpu.h"
 
-/// Over candidate pairs.
-SCREE_DECLARE_LAUNCH(scree_history_match)
+SCREE_DECLARE_LAUNCH(scree_group_bounds)  ///< over the entries of a list
+SCREE_DECLARE_LAUNCH(scree_history_match) ///< over candidate pairs
 
 #endif

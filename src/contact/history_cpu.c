@@ -8,6 +8,7 @@
 #include <string.h>
 
 SCREE_DEFINE_LAUNCH_ON(scree_history_match)
+SCREE_DEFINE_LAUNCH(scree_group_bounds)
 
 enum
 {
@@ -46,21 +47,6 @@ SCREE_LANES_FUNCTION static bool is_unchanged(const scree_history_match_args *a,
     return other[0] == 0;
 }
 
-/// After the candidate pairs have changed both lists are still in order: along the old one, from where the first pair
-/// belongs.
-static void match_along(const scree_history_match_args *a, const int32_t *touching, int32_t num_touching)
-{
-    int64_t old = scree_history_lower_bound(a->old_bodies, a->num_old, a->pairs[touching[0]]);
-    for (int32_t n = 0; n < num_touching; ++n)
-    {
-        const scree_candidate_pair key = a->pairs[touching[n]];
-        while (old < a->num_old && scree_history_is_before(a->old_bodies[old], key)) ++old;
-        const int64_t end = scree_history_end_of_pair(a->old_bodies, a->num_old, old, key);
-        scree_history_match_pair(*a, touching[n], old, end);
-        old = end;
-    }
-}
-
 static void match_block(const scree_history_match_args *a, int64_t begin, int64_t end)
 {
     if (a->old_first_of_pair != NULL && is_unchanged(a, begin, end))
@@ -73,9 +59,7 @@ static void match_block(const scree_history_match_args *a, int64_t begin, int64_
     }
     int32_t touching[BLOCK_PAIRS + 1];
     const int32_t num_touching = scree_pick_touching(a->first_of_pair, NULL, begin, end, touching);
-    if (a->old_first_of_pair == NULL && num_touching > 0) match_along(a, touching, num_touching);
-    else
-        for (int32_t n = 0; n < num_touching; ++n) scree_history_match_at(*a, touching[n]);
+    for (int32_t n = 0; n < num_touching; ++n) scree_history_match_at(*a, touching[n]);
 }
 
 void scree_history_match_launch(scree_history_match_args args, int64_t num)

@@ -1,44 +1,26 @@
 /// \file history_kernel.h
-/// Which contact of the step before a contact continues: same pair and part of it, see SCREE_PATCH_BITS. Both lists are
-/// sorted by (i, j, patch), so the old one is found by its pair while the candidate pairs stay, and by bisection after
-/// they have changed.
+/// Which contact of the step before a contact continues: same pair and part of it, see SCREE_PATCH_BITS. The old one is
+/// found by the index of its pair while the candidate pairs stay, and in the group of its first body after they have
+/// changed, whatever the order of both lists.
 #ifndef SCREE_HISTORY_KERNEL_H
 #define SCREE_HISTORY_KERNEL_H
 
 #include "contact/contact_list.h"
+#include "contact/pair_groups_kernel.h"
 
 typedef struct scree_history_match_args
 {
-    const scree_candidate_pair *pairs;      ///< (num_pairs) present candidate pairs
-    const int64_t *first_of_pair;           ///< (num_pairs + 1) present contacts of each
-    const int64_t *old_first_of_pair;       ///< (num_pairs + 1) old contacts of each, or NULL if the pairs have changed
-    const scree_candidate_pair *old_bodies; ///< (num_old)
-    const int32_t *patch;                   ///< (num_contacts)
-    const int32_t *old_patch;               ///< (num_old)
-    const scree_vec3 *arm;                  ///< (num_contacts)
-    const scree_vec3 *old_arm;              ///< (num_old)
-    int64_t num_old;
-    int64_t *old_of_contact; ///< (num_contacts) out: old contact or -1
-    uint8_t *is_continued;   ///< (num_old) out: 1 where an old contact goes on; zeroed before
+    const scree_candidate_pair *pairs; ///< (num_pairs) present candidate pairs
+    const int64_t *first_of_pair;      ///< (num_pairs + 1) present contacts of each
+    const int64_t *old_first_of_pair;  ///< (num_pairs + 1) old contacts of each, or NULL if the pairs have changed
+    scree_pair_groups old_groups;      ///< of the old contacts; only then
+    const int32_t *patch;              ///< (num_contacts)
+    const int32_t *old_patch;          ///< (num_old)
+    const scree_vec3 *arm;             ///< (num_contacts)
+    const scree_vec3 *old_arm;         ///< (num_old)
+    int64_t *old_of_contact;           ///< (num_contacts) out: old contact or -1
+    uint8_t *is_continued;             ///< (num_old) out: 1 where an old contact goes on; zeroed before
 } scree_history_match_args;
-
-SCREE_FN bool scree_history_is_before(scree_candidate_pair a, scree_candidate_pair b)
-{
-    return a.i < b.i || (a.i == b.i && a.j < b.j);
-}
-
-/// First old contact whose pair is not smaller than (i, j).
-SCREE_FN int64_t scree_history_lower_bound(const scree_candidate_pair *bodies, int64_t num, scree_candidate_pair key)
-{
-    int64_t low = 0, high = num;
-    while (low < high)
-    {
-        const int64_t middle = low + (high - low) / 2;
-        if (scree_history_is_before(bodies[middle], key)) low = middle + 1;
-        else high = middle;
-    }
-    return low;
-}
 
 /// Squared distance of two contact points, both measured from the same body.
 SCREE_FN scree_real scree_history_distance(scree_vec3 a, scree_vec3 b)
@@ -83,27 +65,16 @@ SCREE_FN void scree_history_match_pair(scree_history_match_args a, int64_t p, in
     }
 }
 
-/// The end of the old contacts of a pair that start at `begin`.
-SCREE_FN int64_t scree_history_end_of_pair(const scree_candidate_pair *bodies, int64_t num, int64_t begin,
-                                           scree_candidate_pair key)
-{
-    int64_t end = begin;
-    while (end < num && bodies[end].i == key.i && bodies[end].j == key.j) ++end;
-    return end;
-}
-
 /// All contacts of candidate pair p.
 SCREE_FN void scree_history_match_at(scree_history_match_args a, int64_t p)
 {
     if (a.first_of_pair[p] == a.first_of_pair[p + 1]) return;
-    if (a.old_first_of_pair)
-    {
-        scree_history_match_pair(a, p, a.old_first_of_pair[p], a.old_first_of_pair[p + 1]);
-        return;
-    }
-    const int64_t old_begin = scree_history_lower_bound(a.old_bodies, a.num_old, a.pairs[p]);
-    const int64_t old_end = scree_history_end_of_pair(a.old_bodies, a.num_old, old_begin, a.pairs[p]);
-    scree_history_match_pair(a, p, old_begin, old_end);
+    const scree_candidate_pair pair = a.pairs[p];
+    const bool has_same_pairs = a.old_first_of_pair;
+    const int64_t begin = has_same_pairs ? a.old_first_of_pair[p] : scree_group_find(&a.old_groups, pair.i, pair.j);
+    const int64_t end =
+        has_same_pairs ? a.old_first_of_pair[p + 1] : scree_group_find(&a.old_groups, pair.i, pair.j + 1);
+    scree_history_match_pair(a, p, begin, end);
 }
 
 #endif

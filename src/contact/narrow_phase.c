@@ -1,5 +1,6 @@
 #include "contact/narrow_phase.h"
 
+#include "contact/history.h"
 #include "contact/narrow_phase_launch.h"
 #include "contact/sphere_pairs.h"
 #include "core/buffer.h"
@@ -8,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/// The pairs of one kind, in ascending order.
+/// The pairs of one kind, in the order of all candidate pairs.
 typedef struct pair_batch
 {
     int32_t *pairs; ///< (num) indices of candidate pairs
@@ -38,6 +39,8 @@ struct scree_narrow_phase_buffers
     scree_pair_memory *old_memory; ///< (num_carried) of the pairs before the last search of candidates
     int64_t max_memory, max_old_memory;
     int64_t num_carried; ///< pairs whose memory the next batch takes over
+    int32_t *groups;     ///< (2, max_grouped) where the pairs of each first body begin and end
+    int64_t max_grouped;
 
     scree_sphere *spheres; ///< (max_bodies)
     int64_t max_bodies;
@@ -67,6 +70,7 @@ void scree_narrow_phase_destroy(scree_narrow_phase *narrow_phase)
         scree_device_free(device, b->active);
         scree_device_free(device, b->memory);
         scree_device_free(device, b->old_memory);
+        scree_device_free(device, b->groups);
         scree_device_free(device, b->spheres);
         scree_device_free(device, b->found);
         scree_device_free(device, b->near);
@@ -243,19 +247,22 @@ static scree_status take_memory(const search *s)
     b->old_memory = old;
     b->max_old_memory = max_old;
     if (batch->num == 0) return SCREE_OK;
-    const scree_status status = scree_device_reserve(device, &b->memory, &b->max_memory, batch->num, sizeof *b->memory);
+    const int64_t num_bodies = s->bodies.num_bodies;
+    scree_status status = scree_device_reserve(device, &b->memory, &b->max_memory, batch->num, sizeof *b->memory);
+    if (status == SCREE_OK)
+        status = scree_device_reserve(device, &b->groups, &b->max_grouped, num_bodies, 2 * sizeof *b->groups);
     if (status != SCREE_OK) return status;
+    const scree_pair_groups kept = {b->first_kept, b->active, 1, b->num_carried, b->groups, b->groups + num_bodies};
+    scree_device_zero(device, b->groups, (size_t)num_bodies * 2 * sizeof *b->groups);
+    scree_group_bounds_launch_on(device, kept, kept.num);
     scree_pair_carry_args args;
     memset(&args, 0, sizeof args); // the gaps between its members too
     args.pairs = s->pairs;
     args.batch = batch->pairs;
-    args.num = batch->num;
     args.memory = b->memory;
-    args.kept_i = b->first_kept;
-    args.kept_j = b->active;
+    args.kept = kept;
     args.old_memory = b->old_memory;
-    args.num_kept = b->num_carried;
-    scree_pair_carry_launch_on(device, args, (batch->num + SCREE_CARRY_BLOCK - 1) / SCREE_CARRY_BLOCK);
+    scree_pair_carry_launch_on(device, args, batch->num);
     b->num_carried = 0;
     return SCREE_OK;
 }
@@ -485,6 +492,7 @@ scree_status scree_narrow_phase_find(scree_narrow_phase *narrow_phase, const scr
         // a pair that had no room asks for a second, roomier search
         if (lacks_room) status = make_room(&s, &tally);
     }
+    if (status == SCREE_OK && tally.num_contacts > INT32_MAX) status = SCREE_TOO_MANY;
     if (status == SCREE_OK && are_new) status = scree_contact_list_reserve(list, tally.num_contacts, num_pairs);
     narrow_phase->lacks_room = lacks_room || tally.num_contacts > scree_contact_list_room(list);
     if (status != SCREE_OK || narrow_phase->lacks_room) return status;

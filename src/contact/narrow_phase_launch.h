@@ -11,7 +11,7 @@
 SCREE_DECLARE_LAUNCH(scree_pair_flag)       ///< over candidate pairs
 SCREE_DECLARE_LAUNCH(scree_pair_scatter)    ///< over candidate pairs
 SCREE_DECLARE_LAUNCH(scree_pair_keep)       ///< over pairs of meshes
-SCREE_DECLARE_LAUNCH(scree_pair_carry)      ///< over blocks of pairs of meshes
+SCREE_DECLARE_LAUNCH(scree_pair_carry)      ///< over pairs of meshes
 SCREE_DECLARE_LAUNCH(scree_mesh_apart)      ///< over pairs of meshes
 SCREE_DECLARE_LAUNCH(scree_overlap_pairs)   ///< over slices
 SCREE_DECLARE_LAUNCH(scree_overlap_patches) ///< over slices

@@ -1,10 +1,11 @@
 /// \file pair_memory_kernel.h
-/// What is known of a candidate pair of two meshes from step to step, and how it outlasts a search of candidates: the
-/// pairs of both searches ascend, so each new pair finds its old place by bisection.
+/// What is known of a candidate pair of two meshes from step to step, and how it outlasts a search of candidates: each
+/// new pair finds its old place in the group of its first body.
 #ifndef SCREE_PAIR_MEMORY_KERNEL_H
 #define SCREE_PAIR_MEMORY_KERNEL_H
 
 #include "contact/narrow_phase.h"
+#include "contact/pair_groups_kernel.h"
 
 #include <float.h>
 
@@ -97,47 +98,25 @@ SCREE_FN void scree_pair_keep_at(scree_pair_keep_args a, int64_t m)
     a.memory[m].apart_until = left > 0 ? (float)left * (1 - 4 * FLT_EPSILON) : 0;
 }
 
-/// After it: what is known to the present pairs, a block of them at a time.
+/// After it: what is known to the present pairs.
 typedef struct scree_pair_carry_args
 {
     const scree_candidate_pair *pairs;   ///< all candidate pairs
-    const int32_t *batch;                ///< (num) indices of those of two meshes, ascending
-    int64_t num;                         ///< of them
+    const int32_t *batch;                ///< (num) indices of those of two meshes
     scree_pair_memory *memory;           ///< (num) out
-    const int32_t *kept_i, *kept_j;      ///< (num_kept) ascending
+    scree_pair_groups kept;              ///< (num_kept) the pairs before
     const scree_pair_memory *old_memory; ///< (num_kept)
-    int64_t num_kept;
 } scree_pair_carry_args;
 
-/// Pairs of a block: one bisection for all of them, then along both lists.
-#define SCREE_CARRY_BLOCK 16
-
-SCREE_FN bool scree_kept_is_before(const scree_pair_carry_args *a, int64_t m, scree_candidate_pair pair)
+SCREE_FN void scree_pair_carry_at(scree_pair_carry_args a, int64_t m)
 {
-    return a->kept_i[m] < pair.i || (a->kept_i[m] == pair.i && a->kept_j[m] < pair.j);
-}
-
-SCREE_FN void scree_pair_carry_at(scree_pair_carry_args a, int64_t block)
-{
-    const int64_t begin = block * SCREE_CARRY_BLOCK;
-    const int64_t end = begin + SCREE_CARRY_BLOCK < a.num ? begin + SCREE_CARRY_BLOCK : a.num;
-    int64_t old = 0, high = a.num_kept;
-    while (old < high)
-    {
-        const int64_t middle = old + (high - old) / 2;
-        if (scree_kept_is_before(&a, middle, a.pairs[a.batch[begin]])) old = middle + 1;
-        else high = middle;
-    }
-    for (int64_t m = begin; m < end; ++m)
-    {
-        const scree_candidate_pair pair = a.pairs[a.batch[m]];
-        while (old < a.num_kept && scree_kept_is_before(&a, old, pair)) ++old;
-        const bool is_known = old < a.num_kept && a.kept_i[old] == pair.i && a.kept_j[old] == pair.j;
-        scree_pair_memory memory;
-        memory.direction[0] = memory.direction[1] = 0;
-        memory.apart_until = 0;
-        a.memory[m] = is_known ? a.old_memory[old] : memory;
-    }
+    const scree_candidate_pair pair = a.pairs[a.batch[m]];
+    const int32_t old = scree_group_find(&a.kept, pair.i, pair.j);
+    scree_pair_memory memory;
+    memory.direction[0] = memory.direction[1] = 0;
+    memory.apart_until = 0;
+    if (old < a.kept.end[pair.i] && a.kept.second[old * a.kept.stride] == pair.j) memory = a.old_memory[old];
+    a.memory[m] = memory;
 }
 
 #endif

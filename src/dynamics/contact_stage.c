@@ -66,6 +66,22 @@ scree_bodies scree_step_bodies(const scree_simulation *simulation)
     return bodies;
 }
 
+/// Where the old contacts of each first body stand; only found if they cannot be found by their pair.
+static scree_pair_groups find_old_groups(const scree_simulation *s)
+{
+    const scree_step_buffers *b = s->buffers;
+    const scree_contact_list *old = &s->old_contacts;
+    const int64_t num_bodies = s->particles.num_particles + s->num_walls;
+    const bool has_old = old->num_contacts > 0;
+    const scree_pair_groups groups = {
+        has_old ? &old->bodies->i : NULL, has_old ? &old->bodies->j : NULL, 2, old->num_contacts, b->old_groups,
+        b->old_groups + num_bodies};
+    if (b->is_old_list_of_same_pairs) return groups;
+    scree_device_zero(s->device, b->old_groups, (size_t)num_bodies * 2 * sizeof *b->old_groups);
+    scree_group_bounds_launch_on(s->device, groups, groups.num);
+    return groups;
+}
+
 /// Which old contacts the present ones continue.
 static void match_contacts(const scree_simulation *s)
 {
@@ -75,14 +91,13 @@ static void match_contacts(const scree_simulation *s)
     match.pairs = s->broad_phase.pairs;
     match.first_of_pair = contacts->first_of_pair;
     match.old_first_of_pair = b->is_old_list_of_same_pairs ? old->first_of_pair : NULL;
-    match.old_bodies = old->bodies;
     match.patch = contacts->patch;
     match.old_patch = old->patch;
     match.arm = contacts->arm;
     match.old_arm = old->arm;
-    match.num_old = old->num_contacts;
     match.old_of_contact = b->old_of_contact;
     match.is_continued = b->is_continued;
+    match.old_groups = find_old_groups(s);
     scree_device_zero(s->device, b->is_continued, (size_t)old->num_contacts);
     scree_history_match_launch_on(s->device, match, s->broad_phase.num_pairs);
 }

@@ -115,6 +115,7 @@ static scree_status copy_buffers(scree_simulation *there, const scree_simulation
     SCREE_COPY(searched_pose, num_bodies)
     SCREE_COPY(last_pose, num_bodies)
     SCREE_COPY(travel, num_bodies)
+    SCREE_COPY(old_groups, 2 * num_bodies)
     SCREE_COPY(boxes, num_particles)
     SCREE_COPY(centres, num_particles)
     SCREE_COPY(radii, num_particles)

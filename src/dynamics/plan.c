@@ -21,7 +21,7 @@ scree_plan_bytes scree_simulation_plan_bytes(const scree_simulation *simulation)
     const size_t body = 3 * sizeof(scree_pose) + sizeof(scree_moving_body) + 2 * sizeof(scree_real) + sizeof(int32_t) +
                         (has_spheres ? sizeof(scree_sphere) : 0);
     const size_t tree = 2 * sizeof(scree_lbvh_node) + 4 * sizeof(int32_t) + 2 * (sizeof(uint64_t) + sizeof(int32_t));
-    const size_t rows = 2 * sizeof(int32_t) + sizeof(int64_t);
+    const size_t rows = 4 * sizeof(int32_t) + sizeof(int64_t);
     bytes.search = body + sizeof(scree_box) + sizeof(scree_vec3) + sizeof(scree_real) + tree + rows;
     // ids, rows, keys to sort, batch, first contact now and in the step before
     bytes.pair = sizeof(scree_candidate_pair) + 2 * sizeof(int32_t) + 2 * sizeof(uint64_t) + sizeof(int32_t) +

@@ -64,6 +64,7 @@ scree_status scree_step_buffers_create(scree_simulation *simulation)
     SCREE_ALLOCATE(searched_pose, num_bodies)
     SCREE_ALLOCATE(last_pose, num_bodies)
     SCREE_ALLOCATE(travel, num_bodies)
+    SCREE_ALLOCATE(old_groups, 2 * num_bodies)
     SCREE_ALLOCATE(boxes, num_particles)
     SCREE_ALLOCATE(centres, num_particles)
     SCREE_ALLOCATE(radii, num_particles)
@@ -111,6 +112,7 @@ void scree_step_buffers_destroy(scree_simulation *simulation)
                             b->broad_phase_walls,
                             b->work_sums,
                             b->load_sums,
+                            b->old_groups,
                             b->old_of_contact,
                             b->is_continued,
                             b->sides,

@@ -16,6 +16,7 @@ SCREE_DECLARE_LAUNCH_CUDA(scree_sphere_mesh_write)
 SCREE_DECLARE_LAUNCH_CUDA(scree_clump_clump_count)
 SCREE_DECLARE_LAUNCH_CUDA(scree_clump_clump_write)
 SCREE_DECLARE_LAUNCH_CUDA(scree_history_match)
+SCREE_DECLARE_LAUNCH_CUDA(scree_group_bounds)
 SCREE_DECLARE_LAUNCH_CUDA(scree_contact_force)
 SCREE_DECLARE_LAUNCH_CUDA(scree_gather)
 SCREE_DECLARE_LAUNCH_CUDA(scree_work)
@@ -89,6 +90,16 @@ static void keep_geometry(side &where, const scree_contact_list &list, int64_t n
     where.keep(list.arm, n);
 }
 
+static scree_pair_groups groups_on(side &where, const int32_t *first, const int32_t *second, int64_t stride,
+                                   int64_t num)
+{
+    int32_t *bounds = where.zeros<int32_t>(2 * num_bodies);
+    const scree_pair_groups groups = {first, second, stride, num, bounds, bounds + num_bodies};
+    LAUNCH_ON(where, scree_group_bounds, groups, num);
+    where.keep(bounds, 2 * num_bodies);
+    return groups;
+}
+
 /// What is known of the pairs of meshes in the batch to a batch of only every third, as after a search.
 static void carry_memory_on(side &where, const scree_mesh_pairs_args &args, int64_t num)
 {
@@ -107,19 +118,17 @@ static void carry_memory_on(side &where, const scree_mesh_pairs_args &args, int6
     std::vector<int32_t> batch;
     for (const int32_t p : where.read(args.batch, num))
         if (p % 3 == 0) batch.push_back(p);
+    const int64_t num_carried = (int64_t)batch.size();
     scree_pair_carry_args carry = {};
-    carry.num = (int64_t)batch.size();
     carry.pairs = args.pairs;
-    carry.batch = where.copy(batch.data(), carry.num);
-    carry.memory = where.make<scree_pair_memory>(carry.num);
-    carry.kept_i = keep.kept_i;
-    carry.kept_j = keep.kept_j;
+    carry.batch = where.copy(batch.data(), num_carried);
+    carry.memory = where.make<scree_pair_memory>(num_carried);
+    carry.kept = groups_on(where, keep.kept_i, keep.kept_j, 1, num);
     carry.old_memory = keep.memory;
-    carry.num_kept = num;
-    LAUNCH_ON(where, scree_pair_carry, carry, (carry.num + SCREE_CARRY_BLOCK - 1) / SCREE_CARRY_BLOCK);
-    where.keep(carry.memory, carry.num);
+    LAUNCH_ON(where, scree_pair_carry, carry, num_carried);
+    where.keep(carry.memory, num_carried);
     int64_t num_known = 0;
-    for (const scree_pair_memory &memory : where.read(carry.memory, carry.num)) num_known += memory.apart_until != 0;
+    for (const scree_pair_memory &memory : where.read(carry.memory, num_carried)) num_known += memory.apart_until != 0;
     SCREE_CHECK(num_known > 10);
 }
 
@@ -275,12 +284,11 @@ static void match_history_on(side &where, bool has_same_pairs)
     args.pairs = where.copy(s->broad_phase.pairs, num_pairs);
     args.first_of_pair = contacts.first_of_pair;
     args.old_first_of_pair = has_same_pairs ? old.first_of_pair : nullptr;
-    args.old_bodies = old.bodies;
+    args.old_groups = groups_on(where, &old.bodies->i, &old.bodies->j, 2, old.num_contacts);
     args.patch = contacts.patch;
     args.old_patch = old.patch;
     args.arm = contacts.arm;
     args.old_arm = old.arm;
-    args.num_old = old.num_contacts;
     args.old_of_contact = where.make<int64_t>(num_contacts);
     args.is_continued = where.zeros<uint8_t>(old.num_contacts);
     LAUNCH_ON(where, scree_history_match, args, num_pairs);

@@ -90,25 +90,30 @@ static void test_validate_finds_faults(void)
     scree_contact_list_destroy(&list);
 }
 
-/// How the contacts of `now` continue those of `old`.
+/// How the contacts of `now` continue those of `old`; `bounds` (2, num_bodies): room, zeroed, if the pairs have
+/// changed.
 static scree_history_match_args match_of(const scree_contact_list *now, const scree_contact_list *old,
-                                         const scree_candidate_pair *pairs, bool has_same_pairs,
+                                         const scree_candidate_pair *pairs, int32_t *bounds, int64_t num_bodies,
                                          int64_t *old_of_contact, uint8_t *is_continued)
 {
-    const scree_history_match_args args = {
-        pairs,          now->first_of_pair, has_same_pairs ? old->first_of_pair : NULL,
-        old->bodies,    now->patch,         old->patch,
-        now->arm,       old->arm,           old->num_contacts,
-        old_of_contact, is_continued};
+    scree_history_match_args args = {pairs,       now->first_of_pair, bounds == NULL ? old->first_of_pair : NULL,
+                                     {0},         now->patch,         old->patch,
+                                     now->arm,    old->arm,           old_of_contact,
+                                     is_continued};
+    if (bounds == NULL || old->num_contacts == 0) return args;
+    args.old_groups =
+        (scree_pair_groups){&old->bodies->i, &old->bodies->j, 2, old->num_contacts, bounds, bounds + num_bodies};
+    scree_group_bounds_launch(args.old_groups, old->num_contacts);
     return args;
 }
 
-/// Random old and new lists: the history found by bisection is the one that a search through all finds.
+/// Random old and new lists, each in an order of its own: the history found is the one that a search through all finds.
 static void test_history_follows_pairs(void)
 {
     enum
     {
-        MAX = 400
+        MAX = 400,
+        BODIES = 20
     };
     uint64_t seed = 3;
     for (int round = 0; round < 200; ++round)
@@ -118,15 +123,17 @@ static void test_history_follows_pairs(void)
         {
             scree_candidate_pair bodies[MAX];
             int64_t num = 0;
-            for (int32_t i = 0; i < 20; ++i)
-                for (int32_t j = i + 1; j < 20; ++j)
+            // 3 and 7 have no factor in common with 20
+            for (int32_t n = 0; n < BODIES; ++n)
+                for (int32_t i = round % 2 == 0 ? n : (n + 1) * (k == 0 ? 3 : 7) % BODIES, j = i + 1; j < BODIES; ++j)
                     if (scree_test_random(&seed) < 0.3) bodies[num++] = (scree_candidate_pair){i, j};
             fill(&lists[k], bodies, num);
         }
         int64_t old_of_contact[MAX];
         uint8_t is_continued[MAX] = {0};
+        int32_t bounds[2 * BODIES] = {0};
         const scree_history_match_args args =
-            match_of(lists + 1, lists, lists[1].bodies, false, old_of_contact, is_continued);
+            match_of(lists + 1, lists, lists[1].bodies, bounds, BODIES, old_of_contact, is_continued);
         scree_history_match_launch(args, lists[1].num_contacts);
         int64_t num_continued = 0;
         for (int64_t c = 0; c < lists[1].num_contacts; ++c)
@@ -160,7 +167,7 @@ static void test_patches_find_the_nearest(void)
     now.arm[1].x = 1.02;
     int64_t old_of_contact[2];
     uint8_t is_continued[2] = {0, 0};
-    const scree_history_match_args args = match_of(&now, &old, bodies, true, old_of_contact, is_continued);
+    const scree_history_match_args args = match_of(&now, &old, bodies, NULL, 0, old_of_contact, is_continued);
     scree_history_match_launch(args, 1);
     SCREE_CHECK_INT(old_of_contact[0], 1);
     SCREE_CHECK_INT(old_of_contact[1], 0);

@@ -248,16 +248,19 @@ static void test_history(void)
 {
     const scree_step_buffers *b = s->buffers;
     const scree_contact_list *now = &s->contacts, *old = &s->old_contacts;
+    const size_t num_bodies = (size_t)(s->particles.num_particles + s->num_walls);
     scree_history_match_args match;
     match.pairs = s->broad_phase.pairs;
     match.first_of_pair = now->first_of_pair;
     match.old_first_of_pair = old->first_of_pair;
-    match.old_bodies = old->bodies;
+    match.old_groups = (scree_pair_groups){&old->bodies->i,   &old->bodies->j, 2,
+                                           old->num_contacts, b->old_groups,   b->old_groups + num_bodies};
+    memset(b->old_groups, 0, 2 * num_bodies * sizeof *b->old_groups);
+    scree_group_bounds_launch(match.old_groups, old->num_contacts);
     match.patch = now->patch;
     match.old_patch = old->patch;
     match.arm = now->arm;
     match.old_arm = old->arm;
-    match.num_old = old->num_contacts;
     match.old_of_contact = b->old_of_contact;
     match.is_continued = b->is_continued;
     for (int k = 0; k < 2; ++k)

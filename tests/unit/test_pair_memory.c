@@ -1,5 +1,5 @@
 /// What is known of pairs of meshes from one search of candidates to the next: packed directions, bounds that never
-/// promise more than is left of them, and lists of pairs merged as a comparison of all with all does it.
+/// promise more than is left of them, and each pair finds what a comparison of all with all finds.
 #include "contact/pair_memory_kernel.h"
 
 #include <stdlib.h>
@@ -43,14 +43,22 @@ enum
     MAX_PAIRS = NUM_BODIES * NUM_BODIES
 };
 
-/// Ascending pairs of which `share` are taken; every fourth one is no pair of meshes.
+/// Pairs of which `share` are taken, in groups that follow each other in any order; every fourth one is no pair of
+/// meshes.
 static int64_t make_pairs(uint64_t *state, double share, scree_candidate_pair *pairs, int32_t *batch,
                           int64_t *num_in_batch)
 {
     int64_t num = 0;
     *num_in_batch = 0;
-    for (int32_t i = 0; i < NUM_BODIES; ++i)
-        for (int32_t j = i + 1; j < NUM_BODIES; ++j)
+    int32_t order[NUM_BODIES];
+    for (int32_t k = 0; k < NUM_BODIES; ++k)
+    {
+        const int32_t other = (int32_t)(scree_test_random_bits(state) % (uint64_t)(k + 1));
+        order[k] = order[other];
+        order[other] = k;
+    }
+    for (int32_t k = 0; k < NUM_BODIES; ++k)
+        for (int32_t i = order[k], j = i + 1; j < NUM_BODIES; ++j)
         {
             if (uniform(state) >= share) continue;
             if ((i + j) % 4 != 0) batch[(*num_in_batch)++] = (int32_t)num;
@@ -89,8 +97,11 @@ static void check_lists(uint64_t *state, double old_share, double new_share)
 
     const scree_pair_keep_args keep = {bodies, pairs, batch, memory, kept_i, kept_j};
     for (int64_t m = num_old - 1; m >= 0; --m) scree_pair_keep_at(keep, m);
-    const scree_pair_carry_args carry = {new_pairs, new_batch, num_new, new_memory, kept_i, kept_j, memory, num_old};
-    for (int64_t k = (num_new - 1) / SCREE_CARRY_BLOCK; k >= 0 && num_new > 0; --k) scree_pair_carry_at(carry, k);
+    int32_t begin[NUM_BODIES] = {0}, end[NUM_BODIES] = {0};
+    const scree_pair_groups kept = {kept_i, kept_j, 1, num_old, begin, end};
+    for (int64_t k = num_old - 1; k >= 0; --k) scree_group_bounds_at(kept, k);
+    const scree_pair_carry_args carry = {new_pairs, new_batch, new_memory, kept, memory};
+    for (int64_t m = num_new - 1; m >= 0; --m) scree_pair_carry_at(carry, m);
 
     for (int64_t m = 0; m < num_new; ++m)
     {

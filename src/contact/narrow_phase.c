@@ -400,13 +400,18 @@ static void count_contacts(const search *s)
     struct scree_narrow_phase_buffers *b = s->narrow_phase->buffers;
     scree_device *device = s->narrow_phase->device;
     scree_device_zero(device, b->tally, sizeof *b->tally);
-    find_overlaps(s);
+    const pair_batch *batches = b->batches;
+    scree_device_branch(device, 1);
     scree_sphere_mesh_count_launch_on(device, sphere_args(s, SCREE_PAIR_SPHERE_MESH),
-                                      b->batches[SCREE_PAIR_SPHERE_MESH].num);
+                                      batches[SCREE_PAIR_SPHERE_MESH].num);
+    scree_device_branch(device, 2);
     scree_sphere_sphere_count_launch_on(device, sphere_args(s, SCREE_PAIR_SPHERE_SPHERE),
-                                        b->batches[SCREE_PAIR_SPHERE_SPHERE].num);
+                                        batches[SCREE_PAIR_SPHERE_SPHERE].num);
     scree_clump_clump_count_launch_on(device, sphere_args(s, SCREE_PAIR_CLUMP_CLUMP),
-                                      b->batches[SCREE_PAIR_CLUMP_CLUMP].num);
+                                      batches[SCREE_PAIR_CLUMP_CLUMP].num);
+    scree_device_branch(device, 0);
+    find_overlaps(s);
+    scree_device_join(device);
     int64_t *first_of_pair = s->list->first_of_pair;
     scree_scan_on(&b->scan, first_of_pair, s->num_pairs);
     scree_device_copy(device, &b->tally->num_contacts, first_of_pair + s->num_pairs, sizeof *first_of_pair);
@@ -443,18 +448,25 @@ static void find_gaps(const search *s)
                                  s->narrow_phase->buffers->batches[SCREE_PAIR_MESH_MESH].num);
 }
 
-/// Contacts of all pairs to the list, in the order of the pairs. It has room for them.
+/// Contacts of all pairs to the list, in the order of the pairs. It has room for them. Beside that, gaps are looked
+/// for.
 static void write_contacts(const search *s)
 {
     const pair_batch *batches = s->narrow_phase->buffers->batches;
     scree_device *device = s->narrow_phase->device;
-    scree_mesh_write_launch_on(device, mesh_args(s), batches[SCREE_PAIR_MESH_MESH].num);
+    scree_device_branch(device, 1);
+    find_gaps(s);
+    scree_device_branch(device, 2);
+    scree_sphere_mesh_write_launch_on(device, sphere_args(s, SCREE_PAIR_SPHERE_MESH),
+                                      batches[SCREE_PAIR_SPHERE_MESH].num);
+    scree_device_branch(device, 3);
     scree_sphere_sphere_write_launch_on(device, sphere_args(s, SCREE_PAIR_SPHERE_SPHERE),
                                         batches[SCREE_PAIR_SPHERE_SPHERE].num);
     scree_clump_clump_write_launch_on(device, sphere_args(s, SCREE_PAIR_CLUMP_CLUMP),
                                       batches[SCREE_PAIR_CLUMP_CLUMP].num);
-    scree_sphere_mesh_write_launch_on(device, sphere_args(s, SCREE_PAIR_SPHERE_MESH),
-                                      batches[SCREE_PAIR_SPHERE_MESH].num);
+    scree_device_branch(device, 0);
+    scree_mesh_write_launch_on(device, mesh_args(s), batches[SCREE_PAIR_MESH_MESH].num);
+    scree_device_join(device);
 }
 
 /// Candidate pairs have changed: batches of them, and room to begin with.
@@ -496,7 +508,6 @@ scree_status scree_narrow_phase_find(scree_narrow_phase *narrow_phase, const scr
     if (status == SCREE_OK && are_new) status = scree_contact_list_reserve(list, tally.num_contacts, num_pairs);
     narrow_phase->lacks_room = lacks_room || tally.num_contacts > scree_contact_list_room(list);
     if (status != SCREE_OK || narrow_phase->lacks_room) return status;
-    find_gaps(&s);
     list->num_contacts = tally.num_contacts;
     write_contacts(&s);
     scree_narrow_phase_take_counts(narrow_phase, &tally);
@@ -513,7 +524,6 @@ void scree_narrow_phase_again(scree_narrow_phase *narrow_phase, const scree_bodi
     count_contacts(&s);
     const scree_room_args room = {b->tally, b->max_kept, list->num_contacts, live};
     scree_room_launch_on(narrow_phase->device, room, 1);
-    find_gaps(&s);
     write_contacts(&s);
 }
 

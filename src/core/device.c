@@ -138,6 +138,17 @@ void scree_device_zero(scree_device *device, void *memory, size_t num_bytes)
     else SCREE_CUDA_CALL(scree_cuda_zero(device, memory, num_bytes));
 }
 
+void scree_device_branch(scree_device *device, int32_t branch)
+{
+    if (device != NULL) SCREE_CUDA_CALL(scree_cuda_branch(device, branch));
+    (void)branch;
+}
+
+void scree_device_join(scree_device *device)
+{
+    if (device != NULL) SCREE_CUDA_CALL(scree_cuda_join(device));
+}
+
 void scree_device_wait(scree_device *device)
 {
     if (device != NULL) SCREE_CUDA_CALL(scree_cuda_wait(device));

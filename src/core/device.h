@@ -1,7 +1,7 @@
 /// \file device.h
 /// Where arrays lie and kernels run: an NVIDIA GPU, or the CPU, which NULL stands for everywhere. What is asked of a
-/// GPU is done in the order of the calls, but later; reading waits for it. The first failure stays: everything after it
-/// does nothing, and scree_device_status() tells it.
+/// GPU is done in the order of the calls, unless they are in branches, but later; reading waits for it. The first
+/// failure stays: everything after it does nothing, and scree_device_status() tells it.
 #ifndef SCREE_DEVICE_H
 #define SCREE_DEVICE_H
 
@@ -14,6 +14,8 @@ extern "C"
 #endif
 
     typedef struct scree_device scree_device;
+
+#define SCREE_NUM_BRANCHES 3
 
     /// How a GPU is used. Start from scree_default_device_def().
     typedef struct scree_device_def
@@ -58,6 +60,13 @@ extern "C"
     void scree_device_copy(scree_device *device, void *to, const void *from, size_t num_bytes);
     void scree_device_zero(scree_device *device, void *memory, size_t num_bytes);
 
+    /// Beside the usual way that calls go one after the other, there are branches 1 .. SCREE_NUM_BRANCHES. From here on
+    /// calls go to this one: they are done after what it was asked for before, after what was asked outside of branches
+    /// so far, and beside all else. 0: outside again.
+    void scree_device_branch(scree_device *device, int32_t branch);
+    /// Calls go outside of branches again, after all that these were asked for. Waiting and freeing memory does so too.
+    void scree_device_join(scree_device *device);
+
     /// Waits for all that was asked.
     void scree_device_wait(scree_device *device);
     /// Zeroed memory of the host for copies that nobody waits for. NULL: out of memory.
@@ -74,7 +83,8 @@ extern "C"
     /// May calls be recorded? Never on the CPU, which gains nothing by it.
     bool scree_device_records(const scree_device *device);
     /// From here on calls are kept instead of done: launches, scans, and scree_device_copy(), _zero(), _send(),
-    /// _fetch(). Nothing else may be called. When they are played, launches look up `live`, which lies on the device.
+    /// _fetch(), _branch(), _join(). Nothing else may be called. When they are played, launches look up `live`, which
+    /// lies on the device.
     void scree_device_record(scree_device *device, const scree_live *live);
     /// Ends that. The calls take the place of those of *recording, which is NULL to begin with. False: it cannot be
     /// done, *recording is NULL, and scree_device_records() says no from now on.

@@ -1,5 +1,6 @@
 /// \file device_cuda.cu
-/// Memory and copies of an NVIDIA GPU. One stream; errors are kept, not returned, so that the step reads as on the CPU.
+/// Memory and copies of an NVIDIA GPU. One stream and its branches; errors are kept, not returned, so that the step
+/// reads as on the CPU.
 #include "core/device_cuda.cuh"
 
 #include "core/device_cuda.h"
@@ -101,10 +102,14 @@ scree_status scree_cuda_open(scree_device **device, const scree_device_def *def,
     d->arena_bytes = def->arena_bytes;
     d->concurrency = (int64_t)properties.multiProcessorCount * SCREE_CUDA_RESIDENT;
     memcpy(d->name, properties.name, sizeof d->name);
-    const cudaError_t error = cudaStreamCreate(&d->stream);
-    if (error != cudaSuccess)
+    for (int k = 0; k <= SCREE_NUM_BRANCHES; ++k)
+        if (scree_cuda_note(d, cudaStreamCreate(d->streams + k)))
+            scree_cuda_note(d, cudaEventCreateWithFlags(d->events + k, cudaEventDisableTiming));
+    d->stream = d->streams[0];
+    if (d->error != cudaSuccess)
     {
-        free(d);
+        const cudaError_t error = d->error;
+        scree_cuda_close(d);
         return refuse(error, def->number, report);
     }
     if (def->arena_bytes > 0 && !add_block(d, def->arena_bytes))
@@ -125,12 +130,17 @@ void scree_cuda_close(scree_device *device)
     for (int64_t k = 0; k < device->arena.num_pieces; ++k)
         if (device->arena.pieces[k].is_first) cudaFree(device->arena.pieces[k].address);
     scree_arena_destroy(&device->arena);
-    cudaStreamDestroy(device->stream);
+    for (int k = 0; k <= SCREE_NUM_BRANCHES; ++k)
+    {
+        if (device->events[k] != NULL) cudaEventDestroy(device->events[k]);
+        if (device->streams[k] != NULL) cudaStreamDestroy(device->streams[k]);
+    }
     free(device);
 }
 
 scree_status scree_cuda_status(scree_device *device, scree_report *report)
 {
+    scree_cuda_join(device);
     scree_cuda_note(device, cudaStreamSynchronize(device->stream));
     if (device->error == cudaSuccess) return SCREE_OK;
     scree_report_add(report,
@@ -170,6 +180,8 @@ void *scree_cuda_alloc(scree_device *device, int64_t num_bytes)
 
 void scree_cuda_free(scree_device *device, void *memory)
 {
+    // whoever gets this memory next comes after the branches
+    scree_cuda_join(device);
     if (device->arena_bytes == 0) scree_cuda_note(device, cudaFree(memory));
     else scree_arena_give_back(&device->arena, memory);
 }
@@ -186,8 +198,31 @@ void scree_cuda_fetch(scree_device *device, void *to, const void *from, size_t n
     scree_cuda_note(device, cudaMemcpyAsync(to, from, num_bytes, cudaMemcpyDeviceToHost, device->stream));
 }
 
+void scree_cuda_branch(scree_device *device, int32_t branch)
+{
+    device->stream = device->streams[branch];
+    if (branch == 0 || device->error != cudaSuccess) return;
+    device->is_open[branch] = true;
+    scree_cuda_note(device, cudaEventRecord(device->events[0], device->streams[0]));
+    scree_cuda_note(device, cudaStreamWaitEvent(device->stream, device->events[0], 0));
+}
+
+void scree_cuda_join(scree_device *device)
+{
+    device->stream = device->streams[0];
+    for (int k = 1; k <= SCREE_NUM_BRANCHES; ++k)
+    {
+        if (!device->is_open[k]) continue;
+        device->is_open[k] = false;
+        if (device->error != cudaSuccess) continue;
+        scree_cuda_note(device, cudaEventRecord(device->events[k], device->streams[k]));
+        scree_cuda_note(device, cudaStreamWaitEvent(device->stream, device->events[k], 0));
+    }
+}
+
 void scree_cuda_wait(scree_device *device)
 {
+    scree_cuda_join(device);
     if (device->error != cudaSuccess) return;
     scree_cuda_note(device, cudaStreamSynchronize(device->stream));
 }
@@ -254,6 +289,7 @@ static bool renew(cudaGraphExec_t *ready, cudaGraph_t graph)
 
 bool scree_cuda_end_record(scree_device *device, scree_recording **recording)
 {
+    scree_cuda_join(device);
     cudaGraph_t graph = NULL;
     cudaGraphExec_t ready = (cudaGraphExec_t)*recording;
     const bool is_kept = cudaStreamEndCapture(device->stream, &graph) == cudaSuccess && device->error == cudaSuccess;

@@ -10,11 +10,14 @@
 
 struct scree_device
 {
-    cudaStream_t stream;
+    cudaStream_t stream; ///< that calls go to now
     int32_t block;
-    cudaError_t error;      ///< the first one; nothing is done after it
-    bool records;           ///< and has not failed to
-    const scree_live *live; ///< of the recording under way; NULL: calls are done
+    cudaStream_t streams[SCREE_NUM_BRANCHES + 1]; ///< the first one outside of branches
+    cudaEvent_t events[SCREE_NUM_BRANCHES + 1];   ///< for those who wait for these streams
+    bool is_open[SCREE_NUM_BRANCHES + 1];         ///< branches that nobody has waited for
+    cudaError_t error;                            ///< the first one; nothing is done after it
+    bool records;                                 ///< and has not failed to
+    const scree_live *live;                       ///< of the recording under way; NULL: calls are done
     int64_t arena_bytes;
     int64_t concurrency; ///< threads that its multiprocessors hold, as far as registers of large kernels allow
     scree_arena arena;

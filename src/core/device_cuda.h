@@ -32,6 +32,8 @@ extern "C"
     void scree_cuda_copy(scree_device *device, void *to, const void *from, size_t num_bytes);
     void scree_cuda_zero(scree_device *device, void *memory, size_t num_bytes);
 
+    void scree_cuda_branch(scree_device *device, int32_t branch);
+    void scree_cuda_join(scree_device *device);
     void scree_cuda_wait(scree_device *device);
     void *scree_cuda_alloc_host(size_t num_bytes);
     void scree_cuda_free_host(scree_device *device, void *memory);

@@ -37,16 +37,18 @@ static int64_t count_ended_blocks(const scree_simulation *s)
     return scree_count_blocks(s->old_contacts.num_contacts, SCREE_WORK_BLOCK);
 }
 
-/// What ended contacts had stored, and the largest indentation.
+/// What ended contacts had stored, and the largest indentation; beside forces and motion.
 static void sum_up_contacts(const scree_simulation *s)
 {
     const scree_step_buffers *b = s->buffers;
+    scree_device_branch(s->device, 1);
     const int64_t num = s->contacts.num_contacts;
     const scree_ended_args ended = {s->old_contacts.elastic_energy, s->old_contacts.spring_energy, b->is_continued,
                                     s->old_contacts.num_contacts, b->work_sums};
     scree_ended_launch_on(s->device, ended, count_ended_blocks(s));
     const scree_indentations_args indentations = {s->contacts.indentation, num, &b->tally->largest_indentation};
     scree_indentations_launch_on(s->device, indentations, scree_count_blocks(num, SCREE_WORK_BLOCK));
+    scree_device_branch(s->device, 0);
 }
 
 scree_bodies scree_step_bodies(const scree_simulation *simulation)
@@ -177,7 +179,16 @@ void scree_update_forces(scree_simulation *simulation)
     force.max_sides = b->max_sides;
     scree_contact_force_launch_on(simulation->device, force, simulation->contacts.num_contacts);
     scree_stage_end(&simulation->clock, SCREE_STAGE_FORCES);
+    // beside what follows
+    scree_device_branch(simulation->device, 2);
+    scree_sum_wall_loads(simulation);
+    scree_device_branch(simulation->device, 0);
+    scree_stage_end(&simulation->clock, SCREE_STAGE_WORK);
+}
 
+void scree_gather_forces(scree_simulation *simulation)
+{
+    const scree_step_buffers *b = simulation->buffers;
     const double *gravity = simulation->scene->gravity;
     scree_gather_args gather;
     gather.contacts = scree_contact_list_view(&simulation->contacts);
@@ -226,6 +237,7 @@ void scree_sum_work(scree_simulation *simulation)
     work.time_step = (scree_real)simulation->time_step;
     work.sums = b->work_sums + num_ended;
     scree_work_launch_on(simulation->device, work, num_blocks);
+    scree_device_join(simulation->device);
     reduce_work(simulation, num_ended + num_blocks);
 }
 

@@ -303,7 +303,7 @@ static scree_status start(scree_simulation *s, scree_report *report)
     if (status == SCREE_OK) status = scree_check_start(s, report);
     if (status != SCREE_OK) return status;
     scree_update_forces(s);
-    scree_sum_wall_loads(s);
+    scree_gather_forces(s);
     scree_fetch_board(s);
     scree_take_board(s);
     return SCREE_OK;

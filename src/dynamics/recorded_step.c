@@ -36,15 +36,14 @@ static bool record(scree_simulation *s, scree_recording **recording)
     scree_device_record(s->device, &b->board->live);
     scree_device_send(s->device, &b->board->live, b->live_here, sizeof *b->live_here);
     scree_predict_motion(s);
-    scree_place_walls(s);
     scree_follow_bodies(s);
     const scree_skin_args skin = {&b->tally->particles_moved, &b->tally->walls_moved, b->skin, &b->board->live};
     scree_skin_launch_on(s->device, skin, 1);
     scree_update_contacts_again(s);
     scree_update_forces(s);
+    scree_gather_forces(s);
     scree_correct_motion(s);
     scree_sum_work(s);
-    scree_sum_wall_loads(s);
     scree_fetch_board(s);
     set_numbers(s, 0, num_old);
     return scree_device_end_record(s->device, recording);

@@ -6,12 +6,16 @@
 
 void scree_predict_motion(scree_simulation *simulation)
 {
+    scree_device_branch(simulation->device, 1);
+    scree_place_walls(simulation);
+    scree_device_branch(simulation->device, 0);
     scree_predict_args args;
     args.particles = simulation->particles;
     args.time_step = (scree_real)simulation->time_step;
     args.pose = simulation->buffers->pose;
     args.moving = simulation->buffers->moving;
     scree_predict_launch_on(simulation->device, args, simulation->particles.num_particles);
+    scree_device_join(simulation->device);
 }
 
 void scree_correct_motion(scree_simulation *simulation)
@@ -45,7 +49,6 @@ static scree_status advance_from(scree_simulation *s, scree_halt halt, scree_rep
     if (halt == SCREE_HALT_START)
     {
         scree_predict_motion(s);
-        scree_place_walls(s);
         scree_stage_end(&s->clock, SCREE_STAGE_PREDICT);
         is_search_due = scree_is_search_due(s);
         scree_stage_end(&s->clock, SCREE_STAGE_TRAVEL);
@@ -56,10 +59,10 @@ static scree_status advance_from(scree_simulation *s, scree_halt halt, scree_rep
     scree_stage_end(&s->clock, SCREE_STAGE_OTHER);
     if (status != SCREE_OK) return status;
     scree_update_forces(s);
+    scree_gather_forces(s);
     scree_correct_motion(s);
     scree_stage_end(&s->clock, SCREE_STAGE_CORRECT);
     scree_sum_work(s);
-    scree_sum_wall_loads(s);
     scree_fetch_board(s);
     scree_device_wait(s->device);
     scree_stage_end(&s->clock, SCREE_STAGE_WORK);

@@ -88,7 +88,7 @@ void scree_step_buffers_destroy(scree_simulation *simulation);
 
 /// Poses and velocities of the walls at `time`, on the CPU.
 void scree_move_walls(scree_simulation *simulation, double time);
-/// First half kick and drift of the particles.
+/// First half kick and drift of the particles; poses and velocities of the walls to the body arrays.
 void scree_predict_motion(scree_simulation *simulation);
 /// Poses and velocities of the walls to the body arrays.
 void scree_place_walls(scree_simulation *simulation);
@@ -106,8 +106,10 @@ scree_status scree_search_neighbours(scree_simulation *simulation);
 /// Contacts of the present poses and which old ones they continue; old ones that ended leave their energy to the sums.
 /// If contacts have no room, candidate pairs are searched first: no step without a search takes memory.
 scree_status scree_update_contacts(scree_simulation *simulation);
-/// Forces of the contacts and of gravity on the particles.
+/// Forces of the contacts, and the loads of the moving walls by them.
 void scree_update_forces(scree_simulation *simulation);
+/// These and gravity to the particles.
+void scree_gather_forces(scree_simulation *simulation);
 /// Second half kick.
 void scree_correct_motion(scree_simulation *simulation);
 /// Work of the contacts over the step just done.

@@ -1,19 +1,17 @@
 /// \file device.cpp
-/// Memory, queue and runtime functions of the emulated device. Device memory is readable and writable only while the
-/// device works; what is queued is done when the host waits, so a host that does not wait reads what was there before.
-#include "cuda_runtime.h"
+/// Memory, copies, launches and errors of the emulated device. Device memory is readable and writable only while the
+/// device works; what is asked is done when the host waits, so a host that does not wait reads what was there before.
+#include "machine.h"
 
 #include <cxxabi.h>
 #include <dlfcn.h>
 
 #include <cstdio>
 #include <cstdlib>
-#include <deque>
 #include <iterator>
 #include <map>
 #include <string>
 #include <sys/mman.h>
-#include <vector>
 
 #include "sanitizers.h"
 #include "settings.h"
@@ -21,20 +19,11 @@
 namespace cuda_on_cpu
 {
 
-void run_grid(const char *kernel, const launch_shape &shape, const std::function<void()> &body);
-
 namespace
 {
 
 constexpr size_t page_bytes = 4096;
 constexpr size_t alignment = 256; ///< that cudaMalloc promises
-
-/// A call that was captured.
-struct graph_node
-{
-    node_kind kind;
-    std::function<void()> work;
-};
 
 struct allocation
 {
@@ -43,23 +32,11 @@ struct allocation
     size_t map_bytes;
 };
 
-enum class capture_state
-{
-    none,
-    active,
-    broken ///< by a call that cannot be captured
-};
-
 /// The one device there is.
 struct device
 {
     std::map<char *, allocation> allocations;
     std::map<const char *, size_t> pinned; ///< host memory and its bytes
-    cudaStream_t captured = nullptr;       ///< the stream whose calls are kept instead of done
-    capture_state capture = capture_state::none;
-    std::vector<graph_node> nodes; ///< kept so far
-    bool refuses_graphs = false;
-    std::deque<std::function<void()>> queue;
     size_t num_bytes = 0;
     long num_launches = 0;
     long num_allocations = 0;
@@ -102,12 +79,6 @@ bool is_mapped(uintptr_t address)
     return mincore(reinterpret_cast<void *>(address / page_bytes * page_bytes), 1, &present) == 0;
 }
 
-cudaError_t remember(cudaError_t error)
-{
-    if (error != cudaSuccess) the_device().last_error = error;
-    return error;
-}
-
 /// Refuses what no device would do with these pointers.
 void check_kind(const void *to, const void *from, cudaMemcpyKind kind)
 {
@@ -116,27 +87,6 @@ void check_kind(const void *to, const void *from, cudaMemcpyKind kind)
     if (is_of_device(to) != to_device || is_of_device(from) != from_device)
         fail("a copy of kind %d to %s memory from %s memory", static_cast<int>(kind),
              is_of_device(to) ? "device" : "host", is_of_device(from) ? "device" : "host");
-}
-
-/// A call that cannot be captured spoils the capture under way.
-cudaError_t break_capture(cudaError_t error)
-{
-    the_device().capture = capture_state::broken;
-    return remember(error);
-}
-
-/// For calls that wait, or that change what memory there is.
-bool is_capturing() { return the_device().capture != capture_state::none; }
-
-/// A launch as it is queued: the one that is to fail does.
-std::function<void()> count_launch(std::function<void()> run)
-{
-    if (++the_device().num_launches != settings().fault_at) return run;
-    return []
-    {
-        the_device().is_lost = true;
-        the_device().last_error = cudaErrorIllegalAddress;
-    };
 }
 
 /// Host memory that a captured copy may lie in.
@@ -157,6 +107,29 @@ long number_from(const char *variable, long otherwise)
 }
 
 } // namespace
+
+cudaError_t remember(cudaError_t error)
+{
+    if (error != cudaSuccess) the_device().last_error = error;
+    return error;
+}
+
+bool is_lost() { return the_device().is_lost; }
+
+std::function<void()> count_launch(std::function<void()> run)
+{
+    if (++the_device().num_launches != settings().fault_at) return run;
+    return []
+    {
+        the_device().is_lost = true;
+        the_device().last_error = cudaErrorIllegalAddress;
+    };
+}
+
+void set_all_visible(bool is_visible)
+{
+    for (const auto &entry : the_device().allocations) set_visible(entry.first, entry.second, is_visible);
+}
 
 const machine_settings &settings()
 {
@@ -211,42 +184,9 @@ void refuse_host_addresses(const char *what, const void *bytes, size_t num_bytes
     }
 }
 
-int enqueue(node_kind kind, std::function<void()> work, cudaStream_t stream)
-{
-    if (current != nullptr) fail("a kernel uses a function of the host");
-    device &d = the_device();
-    if (d.capture == capture_state::none || (stream != d.captured && stream != nullptr))
-    {
-        if (kind == node_kind::kernel) work = count_launch(std::move(work));
-        d.queue.push_back(std::move(work));
-        return cudaSuccess;
-    }
-    // the stream without a name waits for all others, which a captured one cannot
-    if (stream == nullptr) return break_capture(cudaErrorStreamCaptureImplicit);
-    if (d.capture == capture_state::broken) return remember(cudaErrorStreamCaptureInvalidated);
-    d.nodes.push_back({kind, std::move(work)});
-    return cudaSuccess;
-}
-
-void drain()
-{
-    device &d = the_device();
-    if (d.queue.empty()) return;
-    for (auto &entry : d.allocations) set_visible(entry.first, entry.second, true);
-    while (!d.queue.empty())
-    {
-        const std::function<void()> work = std::move(d.queue.front());
-        d.queue.pop_front();
-        if (!d.is_lost) work();
-    }
-    for (auto &entry : d.allocations) set_visible(entry.first, entry.second, false);
-}
-
 void allow_allocations(long num) { the_device().num_left = num; }
 
 long num_allocations() { return the_device().num_allocations; }
-
-void refuse_graphs(bool refuses) { the_device().refuses_graphs = refuses; }
 
 int launch(const char *kernel, const launch_shape &shape, std::function<void()> body, cudaStream_t stream)
 {
@@ -300,6 +240,12 @@ const char *cudaGetErrorString(cudaError_t error)
         return "operation failed due to a previous error during capture";
     case cudaErrorStreamCaptureUnmatched:
         return "capture was not initiated in this stream";
+    case cudaErrorStreamCaptureUnjoined:
+        return "capturing stream has unjoined work";
+    case cudaErrorStreamCaptureIsolation:
+        return "dependency created on uncaptured work in another stream";
+    case cudaErrorCapturedEvent:
+        return "operation not permitted on an event last recorded in a capturing stream";
     case cudaErrorStreamCaptureImplicit:
         return "operation would make the legacy stream depend on a capturing blocking stream";
     case cudaErrorGraphExecUpdateFailure:
@@ -349,25 +295,6 @@ cudaError_t cudaGetDeviceProperties(cudaDeviceProp *properties, int device)
     properties->warpSize = 32;
     return cudaSuccess;
 }
-
-cudaError_t cudaDeviceSynchronize()
-{
-    if (is_capturing()) return break_capture(cudaErrorStreamCaptureUnsupported);
-    drain();
-    return the_device().is_lost ? remember(cudaErrorIllegalAddress) : cudaSuccess;
-}
-
-cudaError_t cudaStreamCreate(cudaStream_t *stream)
-{
-    *stream = new cuda_on_cpu_stream;
-    return cudaSuccess;
-}
-cudaError_t cudaStreamDestroy(cudaStream_t stream)
-{
-    delete stream;
-    return cudaDeviceSynchronize();
-}
-cudaError_t cudaStreamSynchronize(cudaStream_t) { return cudaDeviceSynchronize(); }
 
 cudaError_t cudaMalloc(void **address, size_t num_bytes)
 {
@@ -442,7 +369,7 @@ cudaError_t cudaMemcpyAsync(void *to, const void *from, size_t num_bytes, cudaMe
     check_kind(to, from, kind);
     const void *here = kind == cudaMemcpyHostToDevice ? from : kind == cudaMemcpyDeviceToHost ? to : nullptr;
     // memory that is not pinned goes through a buffer of the driver, and the host waits for it
-    if (is_capturing() && stream == the_device().captured && here != nullptr && !is_pinned(here, num_bytes))
+    if (is_captured(stream) && here != nullptr && !is_pinned(here, num_bytes))
         return break_capture(cudaErrorStreamCaptureUnsupported);
     const int error = enqueue(
         node_kind::copy,
@@ -487,78 +414,4 @@ cudaError_t cudaMemsetAsync(void *address, int value, size_t num_bytes, cudaStre
 cudaError_t cudaMemset(void *address, int value, size_t num_bytes)
 {
     return cudaMemsetAsync(address, value, num_bytes, nullptr); // which may return before it is done
-}
-
-// ---- graphs
-
-struct cuda_on_cpu_graph
-{
-    std::vector<graph_node> nodes;
-};
-
-cudaError_t cudaStreamBeginCapture(cudaStream_t stream, cudaStreamCaptureMode)
-{
-    device &d = the_device();
-    if (stream == nullptr) return remember(cudaErrorStreamCaptureUnsupported);
-    if (is_capturing()) return break_capture(cudaErrorIllegalState);
-    d.captured = stream;
-    d.capture = capture_state::active;
-    d.nodes.clear();
-    return cudaSuccess;
-}
-
-cudaError_t cudaStreamEndCapture(cudaStream_t stream, cudaGraph_t *graph)
-{
-    device &d = the_device();
-    *graph = nullptr;
-    if (!is_capturing()) return remember(cudaErrorIllegalState);
-    if (stream != d.captured) return remember(cudaErrorStreamCaptureUnmatched);
-    const bool is_whole = d.capture == capture_state::active;
-    d.capture = capture_state::none;
-    d.captured = nullptr;
-    if (!is_whole) return remember(cudaErrorStreamCaptureInvalidated);
-    *graph = new cuda_on_cpu_graph{std::move(d.nodes)};
-    d.nodes.clear();
-    return cudaSuccess;
-}
-
-cudaError_t cudaGraphInstantiate(cudaGraphExec_t *made, cudaGraph_t graph, unsigned long long)
-{
-    *made = nullptr;
-    if (the_device().refuses_graphs) return remember(cudaErrorMemoryAllocation);
-    *made = new cuda_on_cpu_graph(*graph);
-    return cudaSuccess;
-}
-
-cudaError_t cudaGraphExecUpdate(cudaGraphExec_t made, cudaGraph_t graph, cudaGraphExecUpdateResultInfo *info)
-{
-    // the same kinds of nodes in the same order may get other arguments
-    bool is_alike = made->nodes.size() == graph->nodes.size();
-    for (size_t k = 0; is_alike && k < graph->nodes.size(); ++k) is_alike = made->nodes[k].kind == graph->nodes[k].kind;
-    *info = cudaGraphExecUpdateResultInfo{};
-    info->result = is_alike ? cudaGraphExecUpdateSuccess : cudaGraphExecUpdateErrorTopologyChanged;
-    if (!is_alike) return remember(cudaErrorGraphExecUpdateFailure);
-    made->nodes = graph->nodes;
-    return cudaSuccess;
-}
-
-cudaError_t cudaGraphLaunch(cudaGraphExec_t made, cudaStream_t stream)
-{
-    if (is_capturing()) return break_capture(cudaErrorStreamCaptureUnsupported);
-    if (the_device().is_lost) return remember(cudaErrorIllegalAddress);
-    for (const graph_node &node : made->nodes) enqueue(node.kind, node.work, stream);
-    return cudaSuccess;
-}
-
-cudaError_t cudaGraphDestroy(cudaGraph_t graph)
-{
-    delete graph;
-    return cudaSuccess;
-}
-
-cudaError_t cudaGraphExecDestroy(cudaGraphExec_t made)
-{
-    // what was launched goes on: it is in the queue
-    delete made;
-    return cudaSuccess;
 }

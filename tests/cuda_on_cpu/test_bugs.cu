@@ -127,6 +127,41 @@ static void run_hand_over(bool is_sound)
     MUST_CUDA(cudaDeviceSynchronize());
 }
 
+/// One stream reads what another writes; `is_sound`: after it. The same captured and played.
+static void read_in_another_stream(bool is_sound, bool is_captured)
+{
+    const device_array<int> values(BLOCK);
+    cudaStream_t stream[2];
+    cudaEvent_t event[2];
+    for (int k = 0; k < 2; ++k)
+    {
+        MUST_CUDA(cudaStreamCreate(stream + k));
+        MUST_CUDA(cudaEventCreateWithFlags(event + k, cudaEventDisableTiming));
+    }
+    if (is_captured) MUST_CUDA(cudaStreamBeginCapture(stream[0], cudaStreamCaptureModeThreadLocal));
+    MUST_CUDA(cudaEventRecord(event[0], stream[0]));
+    MUST_CUDA(cudaStreamWaitEvent(stream[1], event[0]));
+    cudaLaunchConfig_t config = {};
+    config.gridDim = dim3(1);
+    config.blockDim = dim3(BLOCK);
+    config.stream = stream[1];
+    MUST_CUDA(cudaLaunchKernelEx(&config, swap_ends, values.data, true));
+    config.stream = stream[0];
+    if (!is_sound) MUST_CUDA(cudaLaunchKernelEx(&config, swap_ends, values.data, true));
+    MUST_CUDA(cudaEventRecord(event[1], stream[1]));
+    MUST_CUDA(cudaStreamWaitEvent(stream[0], event[1]));
+    MUST_CUDA(cudaLaunchKernelEx(&config, swap_ends, values.data, true));
+    if (is_captured)
+    {
+        cudaGraph_t graph;
+        cudaGraphExec_t made;
+        MUST_CUDA(cudaStreamEndCapture(stream[0], &graph));
+        MUST_CUDA(cudaGraphInstantiate(&made, graph, 0));
+        MUST_CUDA(cudaGraphLaunch(made, stream[0]));
+    }
+    MUST_CUDA(cudaDeviceSynchronize());
+}
+
 static void give_host_address()
 {
     std::vector<int> values(BLOCK);
@@ -208,6 +243,10 @@ static const bug_case cases[] = {
     {"sum without atomics", [] { run_kernel(add_from_blocks, 8, 32, false); }, RACES, by_sanitizer},
     {"fences", [] { run_hand_over(true); }, 0, nullptr},
     {"no fences", [] { run_hand_over(false); }, RACES, by_sanitizer},
+    {"streams with a wait", [] { read_in_another_stream(true, false); }, 0, nullptr},
+    {"streams without a wait", [] { read_in_another_stream(false, false); }, RACES, by_sanitizer},
+    {"branches with a wait", [] { read_in_another_stream(true, true); }, 0, nullptr},
+    {"branches without a wait", [] { read_in_another_stream(false, true); }, RACES, by_sanitizer},
     {"host address in an argument", give_host_address, PLAIN, "host address"},
     {"host address in a copy", copy_host_address, PLAIN, "host address"},
     {"read on the host", read_on_host, PLAIN | ADDRESS, by_sanitizer},

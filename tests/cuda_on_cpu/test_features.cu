@@ -271,6 +271,132 @@ static void test_graph()
     MUST_CUDA(cudaFreeHost(summand_here));
 }
 
+/// Two streams and an event for each of them.
+struct two_streams
+{
+    cudaStream_t stream[2];
+    cudaEvent_t event[2];
+    two_streams()
+    {
+        for (int k = 0; k < 2; ++k)
+        {
+            MUST_CUDA(cudaStreamCreate(stream + k));
+            MUST_CUDA(cudaEventCreateWithFlags(event + k, cudaEventDisableTiming));
+        }
+    }
+    two_streams(const two_streams &) = delete;
+    two_streams &operator=(const two_streams &) = delete;
+    ~two_streams()
+    {
+        for (int k = 0; k < 2; ++k)
+        {
+            cudaStreamDestroy(stream[k]);
+            cudaEventDestroy(event[k]);
+        }
+    }
+    /// Stream `waits` comes after what the other one was asked for.
+    void wait(int waits) const
+    {
+        MUST_CUDA(cudaEventRecord(event[1 - waits], stream[1 - waits]));
+        MUST_CUDA(cudaStreamWaitEvent(stream[waits], event[1 - waits]));
+    }
+    /// Sum of two numbers and one, in a stream.
+    void add_up(int k, int *sum, const int *a, const int *b) const;
+};
+
+__global__ void add_up_numbers(int *sum, const int *a, const int *b) { *sum = *a + *b + 1; }
+
+void two_streams::add_up(int k, int *sum, const int *a, const int *b) const
+{
+    cudaLaunchConfig_t config = {};
+    config.gridDim = dim3(1);
+    config.blockDim = dim3(1);
+    config.stream = stream[k];
+    MUST_CUDA(cudaLaunchKernelEx(&config, add_up_numbers, sum, a, b));
+}
+
+/// x[1] and x[2] from x[0] beside each other, x[3] from both; then x[0] from x[3].
+static void enqueue_diamond(const two_streams &two, int *x)
+{
+    two.wait(1);
+    two.add_up(1, x + 2, x, x);
+    two.add_up(1, x + 2, x + 2, x);
+    two.add_up(0, x + 1, x, x);
+    two.wait(0);
+    two.add_up(0, x + 3, x + 1, x + 2);
+    two.add_up(0, x, x + 3, x + 3);
+}
+
+/// What branches and joins by events comes out right in every order, called, captured and played.
+static void test_branches()
+{
+    const two_streams two;
+    const device_array<int> x(std::vector<int>{1, 0, 0, 0});
+    enqueue_diamond(two, x.data);
+    MUST_CUDA(cudaStreamSynchronize(two.stream[0]));
+    // 3, 3 + 1 + 1, 3 + 5 + 1, 9 + 9 + 1
+    SCREE_CHECK(x.read() == (std::vector<int>{19, 3, 5, 9}));
+
+    MUST_CUDA(cudaStreamBeginCapture(two.stream[0], cudaStreamCaptureModeThreadLocal));
+    enqueue_diamond(two, x.data);
+    cudaGraph_t graph;
+    MUST_CUDA(cudaStreamEndCapture(two.stream[0], &graph));
+    SCREE_CHECK_INT(x.read()[0], 19); // nothing has been done
+    cudaGraphExec_t made;
+    MUST_CUDA(cudaGraphInstantiate(&made, graph, 0));
+    int first = 19;
+    for (int play = 0; play < 3; ++play)
+    {
+        MUST_CUDA(cudaGraphLaunch(made, two.stream[0]));
+        first = 2 * (2 * first + 1 + 3 * first + 2 + 1) + 1;
+    }
+    MUST_CUDA(cudaStreamSynchronize(two.stream[0]));
+    SCREE_CHECK_INT(x.read()[0], first);
+    MUST_CUDA(cudaGraphExecDestroy(made));
+    MUST_CUDA(cudaGraphDestroy(graph));
+}
+
+/// A branch that nobody waits for, and one that comes after what is not captured.
+static void test_capture_of_branches()
+{
+    const two_streams two;
+    const device_array<int> x(std::vector<int>{1, 0, 0, 0});
+    cudaGraph_t graph;
+    MUST_CUDA(cudaStreamBeginCapture(two.stream[0], cudaStreamCaptureModeThreadLocal));
+    two.wait(1);
+    two.add_up(1, x.data + 1, x.data, x.data);
+    SCREE_CHECK_INT(cudaStreamEndCapture(two.stream[0], &graph), cudaErrorStreamCaptureUnjoined);
+    SCREE_CHECK(graph == nullptr);
+    cudaGetLastError();
+
+    two.add_up(1, x.data + 1, x.data, x.data);
+    MUST_CUDA(cudaEventRecord(two.event[1], two.stream[1]));
+    MUST_CUDA(cudaStreamBeginCapture(two.stream[0], cudaStreamCaptureModeThreadLocal));
+    SCREE_CHECK_INT(cudaStreamWaitEvent(two.stream[0], two.event[1]), cudaErrorStreamCaptureIsolation);
+    SCREE_CHECK_INT(cudaStreamEndCapture(two.stream[0], &graph), cudaErrorStreamCaptureInvalidated);
+    cudaGetLastError();
+    MUST_CUDA(cudaDeviceSynchronize());
+    SCREE_CHECK_INT(x.read()[1], 3);
+}
+
+#ifdef CUDA_ON_CPU
+/// Who waits for one stream does not wait for another.
+static void test_streams_apart()
+{
+    const two_streams two;
+    int *here;
+    MUST_CUDA(cudaMallocHost(reinterpret_cast<void **>(&here), 2 * sizeof *here));
+    const device_array<int> x(std::vector<int>{5, 6});
+    for (int k = 0; k < 2; ++k)
+        MUST_CUDA(cudaMemcpyAsync(here + k, x.data + k, sizeof *here, cudaMemcpyDeviceToHost, two.stream[k]));
+    MUST_CUDA(cudaStreamSynchronize(two.stream[1]));
+    SCREE_CHECK(here[0] == 0 && here[1] == 6);
+    MUST_CUDA(cudaStreamSynchronize(two.stream[0]));
+    SCREE_CHECK_INT(here[0], 5);
+    MUST_CUDA(cudaFreeHost(here));
+}
+#endif
+
 /// What would wait, or change the memory there is, breaks a capture, and nothing else.
 static void test_broken_capture()
 {
@@ -399,7 +525,10 @@ int main()
     SCREE_RUN(test_schedule);
     SCREE_RUN(test_dynamic_shared);
     SCREE_RUN(test_queue);
+    SCREE_RUN(test_streams_apart);
 #endif
+    SCREE_RUN(test_branches);
+    SCREE_RUN(test_capture_of_branches);
     SCREE_RUN(test_graph);
     SCREE_RUN(test_broken_capture);
     SCREE_RUN(test_graph_of_other_calls);

@@ -2,13 +2,14 @@
 /// The threads of a block as fibers of one thread of the operating system, the blocks of a grid shared between two or
 /// more of those. A fiber runs until it has to wait for others; which one goes on then is the schedule's choice.
 /// Never instrumented itself: it tells the sanitizers about its fibers instead.
-#include "cuda_runtime.h"
+#include "machine.h"
 
 #include <boost/context/fiber.hpp>
 
 #include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
+#include <map>
 #include <memory>
 #include <random>
 #include <sys/mman.h>
@@ -312,17 +313,29 @@ void run_share(worker *self, const launch_shape &shape, const std::function<void
 
 } // namespace
 
+static unsigned current_chain = 0;
+
+void set_chain([[maybe_unused]] unsigned chain)
+{
+#ifdef CUDA_ON_CPU_RACES
+    current_chain = chain;
+#endif
+}
+
 void run_grid(const char *kernel, const launch_shape &shape, const std::function<void()> &body)
 {
-    static std::vector<std::unique_ptr<worker>> workers;
+    static std::map<unsigned, std::vector<std::unique_ptr<worker>>> workers_of_chain;
+    std::vector<std::unique_ptr<worker>> &workers = workers_of_chain[current_chain];
     while (workers.size() < settings().num_workers) workers.push_back(std::make_unique<worker>());
     current_kernel = kernel;
     const bool is_single = shape.grid.x * shape.grid.y * shape.grid.z == 1;
     const unsigned num_workers = is_single ? 1 : settings().num_workers;
+    // the host's own thread has one memory for what blocks share, which grids of all chains would have in common
+    const unsigned first = current_chain == 0 ? 1 : 0;
     std::vector<std::thread> others;
-    for (unsigned w = 1; w < num_workers; ++w)
+    for (unsigned w = first; w < num_workers; ++w)
         others.emplace_back(run_share, workers[w].get(), std::cref(shape), std::cref(body), w, num_workers);
-    run_share(workers[0].get(), shape, body, 0, num_workers);
+    if (first > 0) run_share(workers[0].get(), shape, body, 0, num_workers);
     for (std::thread &other : others) other.join();
     current_kernel = nullptr;
 }

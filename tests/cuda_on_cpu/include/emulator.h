@@ -20,10 +20,8 @@ struct dim3
     constexpr dim3(unsigned x_ = 1, unsigned y_ = 1, unsigned z_ = 1) : x(x_), y(y_), z(z_) {}
 };
 
-struct cuda_on_cpu_stream
-{
-};
-typedef struct cuda_on_cpu_stream *cudaStream_t; ///< all streams are one queue
+typedef struct cuda_on_cpu_stream *cudaStream_t;
+typedef struct cuda_on_cpu_event *cudaEvent_t;
 
 namespace cuda_on_cpu
 {
@@ -94,8 +92,8 @@ enum class node_kind
     set,
     other
 };
-/// Work for the device in the order of the calls. It is done when the host waits for the device, not before; if the
-/// stream is captured, it is kept for a graph instead. Returns a cudaError_t.
+/// Work for the device, after what was asked in the stream before. It is done when the host waits for it, not before;
+/// if the stream is captured, it is kept for a graph instead. Returns a cudaError_t.
 int enqueue(node_kind kind, std::function<void()> work, cudaStream_t stream);
 /// Does all the work that waits.
 void drain();

@@ -186,15 +186,13 @@ static int64_t check_lost(const scree_simulation *s, scree_report *report)
     return num;
 }
 
-/// Particles outside of a closed vessel. Returns their number; without a vessel those that fall past all walls.
-static int64_t check_outside(const scree_simulation *s, scree_report *report, scree_status *status)
+/// Particles outside of a vessel of one wall. Returns their number.
+static int64_t tell_outside_of_wall(const scree_simulation *s, const bool *is_outside, int32_t vessel,
+                                    scree_report *report)
 {
     const int64_t num_particles = s->particles.num_particles;
-    bool *is_outside = malloc((size_t)num_particles + 1);
-    int32_t vessel = -1;
-    *status = is_outside != NULL ? scree_find_outside_of_vessels(s, &vessel, is_outside) : SCREE_OUT_OF_MEMORY;
     int64_t num = 0;
-    for (int64_t i = 0; *status == SCREE_OK && vessel >= 0 && i < num_particles; ++i)
+    for (int64_t i = 0; i < num_particles; ++i)
     {
         if (!is_outside[i] || ++num > MAX_TOLD) continue;
         scree_report_add(
@@ -203,9 +201,64 @@ static int64_t check_outside(const scree_simulation *s, scree_report *report, sc
             "wall is in their way, take away its inner surface",
             describe(s, i).text, describe_body(s, num_particles + vessel).text);
     }
-    free(is_outside);
     tell_more(report, num, "are outside of the closed wall");
-    return *status == SCREE_OK && vessel < 0 ? check_lost(s, report) : num;
+    return num;
+}
+
+/// "walls "shell", "front" and "rear"", those that stay.
+static void name_walls(const scree_simulation *s, char *text, size_t size)
+{
+    int32_t num = 0, k = 0;
+    for (int32_t w = 0; w < s->num_walls; ++w) num += scree_wall_stays(s, w);
+    int length = snprintf(text, size, "walls");
+    for (int32_t w = 0; w < s->num_walls && k < MAX_TOLD; ++w)
+    {
+        if (!scree_wall_stays(s, w)) continue;
+        ++k;
+        length += snprintf(text + length, size - (size_t)length, "%s \"%.60s\"",
+                           k == 1     ? ""
+                           : k == num ? " and"
+                                      : ",",
+                           s->scene->walls[w].name);
+    }
+    if (num > k) snprintf(text + length, size - (size_t)length, " and %d more", num - k);
+}
+
+/// Particles outside of walls that enclose most of them. Returns their number.
+static int64_t tell_outside_of_walls(const scree_simulation *s, const bool *is_outside, int64_t num_inside,
+                                     scree_report *report)
+{
+    const int64_t num_particles = s->particles.num_particles;
+    char names[80 * (MAX_TOLD + 1)];
+    name_walls(s, names, sizeof names);
+    int64_t num = 0;
+    for (int64_t i = 0; i < num_particles; ++i)
+    {
+        if (!is_outside[i] || ++num > MAX_TOLD) continue;
+        scree_report_add(report,
+                         "%s is outside of what the %s close together, which holds %lld of %lld particles and has no "
+                         "hole as wide as the smallest one; move it inside, or, if it belongs there, let a wall open "
+                         "(motion.opens) or give it a time to go (removed_at, which may lie after the end)",
+                         describe(s, i).text, names, (long long)num_inside, (long long)num_particles);
+    }
+    tell_more(report, num, "are outside of these walls");
+    return num;
+}
+
+/// Particles outside of a closed vessel, or, if there is none, that fall past all walls. Returns their number.
+static int64_t check_outside(const scree_simulation *s, scree_report *report, scree_status *status)
+{
+    bool *is_outside = malloc((size_t)s->particles.num_particles + 1);
+    int32_t vessel = -1;
+    int64_t num_inside = 0, num = 0;
+    *status = is_outside != NULL ? scree_find_outside_of_vessels(s, &vessel, is_outside) : SCREE_OUT_OF_MEMORY;
+    if (*status == SCREE_OK && vessel < 0) *status = scree_find_outside_of_walls(s, &num_inside, is_outside);
+    if (*status == SCREE_OK && vessel >= 0) num = tell_outside_of_wall(s, is_outside, vessel, report);
+    else if (*status == SCREE_OK && num_inside > 0 && 2 * num_inside >= s->particles.num_particles)
+        num = tell_outside_of_walls(s, is_outside, num_inside, report);
+    else if (*status == SCREE_OK) num = check_lost(s, report);
+    free(is_outside);
+    return num;
 }
 
 scree_status scree_check_start(const scree_simulation *simulation, scree_report *report)

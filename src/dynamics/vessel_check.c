@@ -1,6 +1,6 @@
 /// \file vessel_check.c
 /// Closed vessels: walls whose mesh has an inner surface of its own, around a void that is most of the wall. Particles
-/// belong into such a void. Vessels that several walls make together, a shell and its end plates, are not seen.
+/// belong into such a void. Vessels that several walls make together: enclosure_check.c.
 ///
 /// The surface of a mesh falls into parts that no edge joins; around a void the triangles face inwards, so that the
 /// signed volume of the part is negative. A point outside of the solid whose nearest triangle belongs to such a part is

@@ -2,14 +2,15 @@
 /// The cost of a step over the skin s, in nanoseconds of one core. Candidates grow with the volume around a particle,
 /// P(s) = P (R + s)^3 / (R + s0)^3 with the mean bounding radius R, and a search is needed every s/u steps, u being the
 /// way of the fastest bodies in one step. A search costs so much per particle and candidate, and every step looks at
-/// each candidate. The minimum is flat, so the constants need not be those of the machine.
+/// each candidate. These costs were measured beforehand and are the same everywhere, so that a run searches at the same
+/// steps on every machine; the minimum is flat, so they need not be those of the machine.
 #include "dynamics/skin.h"
 
 #include "dynamics/step_buffers.h"
 
 #include <math.h>
 
-/// Costs [ns] on one core, rounded; benchmarks/NOTES.md.
+/// Costs [ns] on one core, measured once and rounded; benchmarks/NOTES.md.
 enum
 {
     SEARCH_PER_PARTICLE = 400,

@@ -553,7 +553,9 @@ static const scree_scene_key solver_keys[] = {
      .min = 0,
      .max = 10,
      .meaning = "room around the boxes of the neighbour search over the mean bounding radius: more pairs, rarer "
-                "searches; auto: what should cost least, chosen anew at every search; results stay the same"},
+                "searches; auto: what should cost least, chosen anew at every search from counts (particles, pairs, "
+                "steps) times costs measured beforehand, which are the same on every machine, so that runs are "
+                "repeatable; results stay the same"},
     {.name = "overlap_scheme",
      .default_text = "filtered",
      .rule = SCREE_TEXT_WORD,

@@ -2,6 +2,7 @@
 # No multiply-add is contracted: neither in the release objects as built nor with the same flags for a processor that
 # has the instruction, with GCC and with Clang. There fma() calls stay calls (-fno-builtin-fma), so every multiply-add
 # instruction is a contraction. That the check can fail is tried first, with contraction switched on.
+# And the hot loops are vectors: what GCC makes of the lane functions for AVX2 holds packed arithmetic.
 . "$(dirname "$0")/common.sh"
 [ "$(uname -m)" = x86_64 ] || { echo "skipped: knows the instructions of x86-64 only"; exit 77; }
 [ -f "$build/libscree.a" ] || { echo "$build/libscree.a has not been built"; exit 1; }
@@ -38,4 +39,33 @@ for compiler in gcc clang; do
             sed "s|\$| contracted by $compiler in ${source#"$root"/}|" >>"$scratch/faults"
     done <"$scratch/commands"
 done
+
+# Packed additions, multiplications, divisions and roots of four numbers in the AVX2 versions of the lane functions:
+# three quarters at least of what GCC 12 makes. Without vectors there is none.
+count_packed() {
+    objdump -d --no-show-raw-insn "$1" | awk '
+        /^[0-9a-f]+ <.*>:$/ { in_lanes = /\.avx2>:$/ }
+        in_lanes && /[ \t]v(add|sub|mul|div|sqrt)p[ds] .*%ymm/ { ++num }
+        END { print num + 0 }'
+}
+objects=$build/CMakeFiles/scree.dir/src
+if readelf -p .comment "$objects/forces/gather_cpu.c.o" | grep clang >/dev/null || grep SCREE_CHECKED "$scratch/commands" >/dev/null; then
+    echo "packed arithmetic of the hot loops: skipped, only GCC's optimised builds have versions for AVX2 (SCREE_LANES_FUNCTION)"
+else
+    probe=$(awk -F'\t' '$1 ~ /gather_cpu.c$/ { print $2 }' "$scratch/commands")
+    (cd "$build" && bash -c "$probe -fno-tree-vectorize -o $scratch/probe.o") || exit 1
+    [ "$(count_packed "$scratch/probe.o")" -lt 25 ] ||
+        { echo "without vectorising, packed arithmetic is found: the check sees nothing"; exit 1; }
+    while read -r source floor; do
+        num=$(count_packed "$objects/$source.c.o")
+        echo "$source: $num packed instructions"
+        [ "$num" -ge "$floor" ] || echo "src/$source.c: $num packed instructions, expected $floor at least: not vectorised" >>"$scratch/faults"
+    done <<'FLOORS'
+forces/contact_force_cpu 230
+forces/work_cpu 50
+forces/gather_cpu 25
+contact/sphere_contacts_cpu 27
+dynamics/integrator_cpu 80
+FLOORS
+fi
 finish "sources compiled for a processor with multiply-add" "$(wc -l <"$scratch/commands")" "$scratch/faults"

@@ -96,6 +96,11 @@ static void check_savings(const char *scene_text, const char *end)
     for (size_t k = 0; k < sizeof keys / sizeof *keys; ++k)
         for (int num_threads = 1; num_threads <= 2; ++num_threads)
             SCREE_CHECK(run_hash(scene_text, num_threads, keys[k], end) == all);
+    // all of them together: a search of all pairs of boxes in each step, and the overlap of each
+    static const char nothing_avoided[] =
+        "solver={skin: 0.1, reuse_pairs: false, compare_spheres: false, "
+        "find_separation: false, remember_separation: false, bound_separation: false}";
+    SCREE_CHECK(run_hash(scene_text, 2, nothing_avoided, end) == all);
 }
 
 static void test_avoided_work_changes_no_bit(void)

@@ -296,8 +296,9 @@ static void check_near_counts(const char *where, const int num[SCREE_NEAR_NODES 
     printf("%s: ", where);
     for (int k = 0; k < SCREE_NEAR_NODES + 2; ++k) printf("%d ", num[k]);
     printf("have 0, 1, ... triangles near, the last ones more; %d touch\n", num_touching);
-    for (int k = 0; k < SCREE_NEAR_NODES + 2; k += SCREE_NEAR_NODES + 1) SCREE_CHECK(num[k] > 20);
-    SCREE_CHECK(num[1] > 20 && num[2] > 20 && num_touching > 500);
+    int num_listed = 0;
+    for (int k = 1; k <= SCREE_NEAR_NODES; ++k) num_listed += num[k];
+    SCREE_CHECK(num[0] > 20 && num_listed > 1000 && num[SCREE_NEAR_NODES + 1] > 20 && num_touching > 500);
 }
 
 /// About a ball of triangles that is three times as large as it is stored.

@@ -3,8 +3,9 @@
 enable_language(CUDA)
 set(CMAKE_CUDA_STANDARD 17)
 set(CMAKE_CUDA_STANDARD_REQUIRED ON)
+# machine code for 8.x, 9.x and 12.x; what the driver compiles at the first run for 10.x, 11.x and all that are newer
 if(CMAKE_CUDA_ARCHITECTURES STREQUAL "" OR CMAKE_CUDA_ARCHITECTURES STREQUAL CMAKE_CUDA_ARCHITECTURES_DEFAULT)
-    set(CMAKE_CUDA_ARCHITECTURES "80-real;90-real;120")
+    set(CMAKE_CUDA_ARCHITECTURES "80-real;90;120")
 endif()
 find_package(CUDAToolkit REQUIRED)
 # no contraction, denormals kept, division and square root rounded correctly: the bits of the CPU

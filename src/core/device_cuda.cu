@@ -40,7 +40,27 @@ static scree_status refuse(cudaError_t error, int number, scree_report *report)
     return error == cudaErrorMemoryAllocation ? SCREE_OUT_OF_MEMORY : SCREE_NO_DEVICE;
 }
 
-/// Is GPU `number` there and new enough? Its properties.
+/// Stands for all kernels: they are compiled for the same GPUs.
+static __global__ void any_kernel() {}
+
+/// Does the program hold code for the GPU that was chosen?
+static scree_status find_code(int number, const cudaDeviceProp *properties, scree_report *report)
+{
+    cudaFuncAttributes attributes;
+    const cudaError_t error = cudaFuncGetAttributes(&attributes, (const void *)any_kernel);
+    if (error == cudaSuccess) return SCREE_OK;
+    cudaGetLastError(); // told by the message
+    if (error != cudaErrorNoKernelImageForDevice && error != cudaErrorInvalidDeviceFunction)
+        return refuse(error, number, report);
+    scree_report_add(report,
+                     "this program was not built for GPU %d, \"%s\", of compute capability %d.%d: configure it with "
+                     "-DCMAKE_CUDA_ARCHITECTURES=%d%d and build it again, or run on the CPU",
+                     number, properties->name, properties->major, properties->minor, properties->major,
+                     properties->minor);
+    return SCREE_NO_DEVICE;
+}
+
+/// Is GPU `number` there, new enough, and is the program built for it? Its properties.
 static scree_status find_device(int number, cudaDeviceProp *properties, scree_report *report)
 {
     int num_devices = 0;
@@ -64,7 +84,7 @@ static scree_status find_device(int number, cudaDeviceProp *properties, scree_re
                          SCREE_CUDA_CAPABILITY % 10);
         return SCREE_NO_DEVICE;
     }
-    return SCREE_OK;
+    return find_code(number, properties, report);
 }
 
 /// One more block of memory for the arena, of num_bytes at least.

@@ -1,10 +1,11 @@
-"""Registers, stack, spills, shared memory and occupancy of every kernel, from the words of `ptxas -v`, as the table
-docs/cuda_resources.md.
+"""Registers, stack, spills, shared memory and occupancy of every kernel, from the words of `ptxas -v`, as the tables of
+docs/cuda_resources.md, one for each precision.
 
 usage: cuda_resources.py [--write] LOG...
 
-Fails if a kernel has a stack frame or spills without a reason below, if such a reason is no longer needed, or if the
-table is not that of these logs; --write writes the table instead.
+Names of logs begin with their precision, double_ or float_. Fails if a kernel has a stack frame or spills without a
+reason below, if such a reason is no longer needed, or if the tables are not those of these logs; --write writes them
+instead.
 """
 import re
 import subprocess
@@ -18,7 +19,9 @@ BLOCK_WARPS = 4  # SCREE_CUDA_BLOCK
 # 65536 registers, given to warps in units of 256
 LIMITS = {"80": (64, 32), "90": (64, 32), "120": (48, 24)}
 
-# kernels that may have a frame or spills, and why
+PRECISIONS = {"double": "Double precision", "float": "Single precision"}
+
+# kernels that may have a frame or spills in both precisions, and why
 REASONS = {
     "scree_particle_pairs": "32 keys wait in a batch, so that one atomic serves them all; runs at neighbour searches only",
     "scree_wall_pairs": "as scree_particle_pairs",
@@ -28,18 +31,29 @@ REASONS = {
     "only where a scene asks for patches",
 }
 
+# the same in one precision only
+REASONS_IN = {"double": {}, "float": {}}
+
 HEAD = """# What the kernels take on a GPU
 
-Made by `tests/checks/test_cuda.sh --write` from the words of `ptxas -v` ({compiler}, double precision, blocks of {block}
-threads). Three numbers are for compute capabilities 8.0, 9.0 and 12.0, one stands for all. Registers per thread; stack and
-spilt bytes (stores + loads) per thread; shared memory per block; occupancy: the warps that a multiprocessor holds at a time,
-of those it could hold, as far as registers decide. Nothing here was timed.
+Made by `tests/checks/test_cuda.sh --write` from the words of `ptxas -v` ({compiler}, blocks of {block} threads). Three
+numbers are for compute capabilities 8.0, 9.0 and 12.0, one stands for all. Registers per thread; stack and spilt bytes
+(stores + loads) per thread; shared memory per block; occupancy: the warps that a multiprocessor holds at a time, of those
+it could hold, as far as registers decide. Nothing here was timed.
 
-No kernel may have a stack frame or spills, unless the table says why.
+No kernel may have a stack frame or spills, unless its table says why.
+"""
+
+TABLE_HEAD = """
+## {precision}
 
 | kernel | registers | stack | spills | shared | occupancy | |
 |---|---|---|---|---|---|---|
 """
+
+
+def reasons_in(precision):
+    return {**REASONS, **REASONS_IN[precision]}
 
 
 def read_logs(paths):
@@ -47,7 +61,7 @@ def read_logs(paths):
     kernels = {}
     entry = None
     for path in paths:
-        for line in Path(path).read_text().splitlines():
+        for line in path.read_text().splitlines():
             found = re.search(r"Compiling entry function '\w*?\d(scree_[a-z0-9_]+?)_grid\w*' for 'sm_(\d+)'", line)
             if found:
                 entry = kernels.setdefault(found[1], {}).setdefault(found[2], {})
@@ -77,10 +91,14 @@ def column(by_architecture, value):
     return texts[0] if len(set(texts)) == 1 else " / ".join(texts)
 
 
-def make_table(kernels):
+def make_head():
     words = subprocess.run(["nvcc", "--version"], capture_output=True, text=True, check=False).stdout
     release = re.search(r"release ([0-9.]+)", words)
-    text = HEAD.format(compiler="nvcc " + (release[1] if release else "of unknown release"), block=32 * BLOCK_WARPS)
+    return HEAD.format(compiler="nvcc " + (release[1] if release else "of unknown release"), block=32 * BLOCK_WARPS)
+
+
+def make_table(precision, kernels):
+    text = TABLE_HEAD.format(precision=PRECISIONS[precision])
     for kernel in sorted(kernels):
         k = kernels[kernel]
         text += "| `{}` | {} | {} | {} | {} | {} | {} |\n".format(
@@ -90,41 +108,46 @@ def make_table(kernels):
             column(k, lambda a, e: e["spills"]),
             column(k, lambda a, e: e["shared"]),
             column(k, lambda a, e: f"{occupancy(a, e['registers'])} %"),
-            REASONS.get(kernel, ""),
+            reasons_in(precision).get(kernel, ""),
         )
     return text
 
 
-def find_faults(kernels):
+def find_faults(precision, kernels):
     faults = []
+    reasons = reasons_in(precision)
     for kernel, by_architecture in sorted(kernels.items()):
         if set(by_architecture) != set(LIMITS) or any("registers" not in e for e in by_architecture.values()):
-            faults.append(f"{kernel}: the words of ptxas are not complete: {by_architecture}")
+            faults.append(f"{kernel}, {precision}: the words of ptxas are not complete: {by_architecture}")
             continue
         has_frame = any(e["stack"] or e["spills"] for e in by_architecture.values())
-        if has_frame and kernel not in REASONS:
+        if has_frame and kernel not in reasons:
             faults.append(
-                f"{kernel}: has {column(by_architecture, lambda a, e: e['stack'])} bytes of stack and spills "
+                f"{kernel}, {precision}: has {column(by_architecture, lambda a, e: e['stack'])} bytes of stack and spills "
                 f"{column(by_architecture, lambda a, e: e['spills'])}; give it fewer variables, or a reason in {__file__}"
             )
-        if not has_frame and kernel in REASONS:
-            faults.append(f"{kernel}: has neither stack nor spills, so its reason in {__file__} can go")
-    faults += [f"{kernel}: has a reason in {__file__}, but is not there" for kernel in REASONS if kernel not in kernels]
+        if not has_frame and kernel in reasons:
+            faults.append(f"{kernel}, {precision}: has neither stack nor spills, so its reason in {__file__} can go")
+    faults += [f"{kernel}, {precision}: has a reason in {__file__}, but is not there" for kernel in reasons if kernel not in kernels]
     return faults
 
 
 def main(arguments):
     is_write = "--write" in arguments
-    kernels = read_logs([a for a in arguments if a != "--write"])
-    if not kernels:
-        return ["no kernels in the words of ptxas"]
-    faults = find_faults(kernels)
-    if any("not complete" in fault for fault in faults):
-        return faults
-    table = make_table(kernels)
+    paths = [Path(a) for a in arguments if a != "--write"]
+    page = make_head()
+    faults = []
+    for precision in PRECISIONS:
+        kernels = read_logs([path for path in paths if path.name.startswith(precision + "_")])
+        if not kernels:
+            return [f"no kernels of {precision} in the words of ptxas"]
+        faults += find_faults(precision, kernels)
+        if any("not complete" in fault for fault in faults):
+            return faults
+        page += make_table(precision, kernels)
     if is_write:
-        TABLE.write_text(table)
-    elif not TABLE.exists() or TABLE.read_text() != table:
+        TABLE.write_text(page)
+    elif not TABLE.exists() or TABLE.read_text() != page:
         faults.append(f"{TABLE}: is not that of these kernels; run tests/checks/test_cuda.sh --write")
     return faults
 

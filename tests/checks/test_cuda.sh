@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Every .cu file compiles without warnings for the three architectures, in both precisions; the PTX holds no multiply-add
+# In both precisions, every .cu file compiles without warnings for the three architectures, and its PTX holds no multiply-add
 # but those written as fma(); every kernel header compiles alone as CUDA. Nothing is run: that needs a device. The tests of
 # the stand-in for a device, tests/cuda_on_cpu, compile too: what it offers is what CUDA has. What the kernels take is that
 # of docs/cuda_resources.md, without stack and spills where nothing else is said; --write writes this page.
@@ -14,17 +14,16 @@ mapfile -t headers < <(find src -name '*_kernel.h' | LC_ALL=C sort)
 
 # One job a line: KIND FILE. Faults go to a file of their own, since two jobs run at a time.
 job() {
-    local kind=$1 file=$2 out
+    local kind=$1 file=$2 real= out
+    [[ $kind != float* ]] || real=-DSCREE_SINGLE=1
     out=$scratch/$(echo "$kind $file" | tr ' /' '__')
     case $kind in
     double | float)
-        local real=
-        [ "$kind" = float ] && real=-DSCREE_SINGLE=1
         "$nvcc" $flags $real -Xptxas=-v -gencode arch=compute_80,code=sm_80 -gencode arch=compute_90,code=sm_90 \
             -gencode arch=compute_120,code=sm_120 -c "$file" -o "$out.o"
         ;;
-    ptx)
-        "$nvcc" $flags -arch=sm_80 -rdc=true -include tests/checks/mark_fma.h --ptx "$file" -o "$out.ptx" &&
+    double_ptx | float_ptx)
+        "$nvcc" $flags $real -arch=sm_80 -rdc=true -include tests/checks/mark_fma.h --ptx "$file" -o "$out.ptx" &&
             ! grep -nE '^[[:space:]]*(fma|mad)\.[a-z.]*f(32|64)' "$out.ptx"
         ;;
     test)
@@ -39,18 +38,18 @@ job() {
 export -f job
 
 # that the check of the PTX can fail: with contraction on, there is something to find
-"$nvcc" ${flags/--fmad=false/} -arch=sm_80 --ptx src/forces/forces_cuda.cu -o "$scratch/probe.ptx" &&
-    grep -E 'fma\.rn\.f64' "$scratch/probe.ptx" >/dev/null ||
-    { echo "with contraction on, no fma is found in the PTX: the check sees nothing"; exit 1; }
+for real in 64 32; do
+    "$nvcc" ${flags/--fmad=false/} $([ $real = 64 ] || echo -DSCREE_SINGLE=1) -arch=sm_80 --ptx src/forces/forces_cuda.cu \
+        -o "$scratch/probe.ptx" && grep "fma\.rn\.f$real" "$scratch/probe.ptx" >/dev/null ||
+        { echo "with contraction on, no fma of $real bits is found in the PTX: the check sees nothing"; exit 1; }
+done
 
 {
-    printf 'double %s\n' "${units[@]}"
-    printf 'float %s\n' "${units[@]}"
-    printf 'ptx %s\n' "${units[@]}"
+    for kind in double float double_ptx float_ptx; do printf "$kind %s\n" "${units[@]}"; done
     printf 'header %s\n' "${headers[@]}"
     printf 'test %s\n' "${emulated[@]}"
 } | xargs -P 2 -L 1 bash -c 'job "$@"' job
 cat "$scratch"/*.fault >"$scratch/faults" 2>/dev/null
 PATH=$PATH:$(dirname "$nvcc")
-python3 -B tests/checks/cuda_resources.py "$@" "$scratch"/double_*.log >>"$scratch/faults" 2>&1
+python3 -B tests/checks/cuda_resources.py "$@" "$scratch"/{double,float}_src_*.log >>"$scratch/faults" 2>&1
 finish "CUDA files and kernel headers" $((${#units[@]} + ${#headers[@]})) "$scratch/faults"

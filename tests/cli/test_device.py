@@ -72,6 +72,7 @@ def test_a_run_on_the_device_is_that_of_the_cpu(scene, tmp_path):
 @pytest.mark.parametrize("machine, words", [
     ({"DEVICES": 0}, "no NVIDIA GPU"),
     ({"CAPABILITY": 75}, "compute capability 7.5"),
+    ({"CODE": 90, "CAPABILITY": 110}, "CMAKE_CUDA_ARCHITECTURES=110"),
     ({"DRIVER": 11000}, "update the driver"),
     ({"DRIVER": 0}, "no NVIDIA driver"),
 ])

@@ -81,7 +81,7 @@ def test_a_sound_machine(machine):
     assert "CUDA on the CPU, 1.0, 8.0" in words and "tests passed" in words
     # the same scenes in both precisions, with states of their own
     double, single = (dict(re.findall(rf"^{name}\.(\w+): ([0-9a-f]+)$", words, re.MULTILINE)) for name in ("scree", "scree_single"))
-    assert len(double) == 5 and set(double) == set(single) and not set(double.values()) & set(single.values())
+    assert len(double) == 6 and set(double) == set(single) and not set(double.values()) & set(single.values())
     assert words.count("0 errors") == 12
     # every bed that fits with its table, and why the next one does not
     for precision in ("double", "single"):
@@ -134,4 +134,4 @@ def test_a_device_that_breaks(machine):
     (machine.tools / "compute-sanitizer").unlink()
     code, words = machine.check(CUDA_ON_CPU_FAULT_AT="20")
     assert code == 1 and "skipped: there is no compute-sanitizer" in words
-    assert words.count("the run on the GPU fails") == 2 * 10 and words.count("the bed of 30 particles fails") == 2 * 4
+    assert words.count("the run on the GPU fails") == 2 * 12 and words.count("the bed of 30 particles fails") == 2 * 4

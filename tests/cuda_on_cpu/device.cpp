@@ -89,6 +89,13 @@ void check_kind(const void *to, const void *from, cudaMemcpyKind kind)
              is_of_device(to) ? "device" : "host", is_of_device(from) ? "device" : "host");
 }
 
+/// Machine code runs on GPUs of its major capability, from its minor one on.
+bool has_code()
+{
+    const int code = settings().code, capability = settings().capability;
+    return code == 0 || (code / 10 == capability / 10 && code <= capability);
+}
+
 /// Host memory that a captured copy may lie in.
 bool is_pinned(const void *address, size_t num_bytes)
 {
@@ -144,6 +151,7 @@ const machine_settings &settings()
         s.num_workers = static_cast<unsigned>(number_from("CUDA_ON_CPU_WORKERS", 2));
         s.num_devices = static_cast<int>(number_from("CUDA_ON_CPU_DEVICES", 1));
         s.capability = static_cast<int>(number_from("CUDA_ON_CPU_CAPABILITY", 80));
+        s.code = static_cast<int>(number_from("CUDA_ON_CPU_CODE", 0));
         s.driver = static_cast<int>(number_from("CUDA_ON_CPU_DRIVER", 13000));
         s.memory = static_cast<size_t>(number_from("CUDA_ON_CPU_MEMORY", 1l << 32));
         s.fault_at = number_from("CUDA_ON_CPU_FAULT_AT", 0);
@@ -197,6 +205,7 @@ int launch(const char *kernel, const launch_shape &shape, std::function<void()> 
         g.y > 65535 || g.z > 65535 || shape.dynamic_shared_bytes > 48 * 1024)
         return remember(cudaErrorInvalidConfiguration);
     if (d.is_lost) return remember(cudaErrorIllegalAddress);
+    if (!has_code()) return remember(cudaErrorNoKernelImageForDevice);
     return enqueue(
         node_kind::kernel, [=, body = std::move(body)] { run_grid(kernel, shape, body); }, stream);
 }
@@ -230,6 +239,8 @@ const char *cudaGetErrorString(cudaError_t error)
         return "CUDA driver version is insufficient for CUDA runtime version";
     case cudaErrorNoDevice:
         return "no CUDA-capable device is detected";
+    case cudaErrorInvalidDeviceFunction:
+        return "invalid device function";
     case cudaErrorNoKernelImageForDevice:
         return "no kernel image is available for execution on the device";
     case cudaErrorIllegalState:
@@ -293,6 +304,14 @@ cudaError_t cudaGetDeviceProperties(cudaDeviceProp *properties, int device)
     properties->minor = settings().capability % 10;
     properties->multiProcessorCount = static_cast<int>(settings().num_workers);
     properties->warpSize = 32;
+    return cudaSuccess;
+}
+
+cudaError_t cudaFuncGetAttributes(cudaFuncAttributes *attributes, const void *)
+{
+    if (!has_code()) return remember(cudaErrorNoKernelImageForDevice);
+    *attributes = cudaFuncAttributes{};
+    attributes->binaryVersion = settings().capability;
     return cudaSuccess;
 }
 

@@ -22,6 +22,7 @@ struct machine_settings
     unsigned num_workers;
     int num_devices;
     int capability;    ///< 80 stands for 8.0
+    int code;          ///< capability that kernels are compiled for, as machine code; 0: for all
     int driver;        ///< as cudaDriverGetVersion() tells it
     size_t memory;     ///< [bytes]
     long fault_at;     ///< number of the launch that fails, counted from 1; 0: none

@@ -181,6 +181,7 @@ enum cudaError_t
     cudaErrorMemoryAllocation = 2,
     cudaErrorInvalidConfiguration = 9,
     cudaErrorInsufficientDriver = 35,
+    cudaErrorInvalidDeviceFunction = 98,
     cudaErrorNoDevice = 100,
     cudaErrorNoKernelImageForDevice = 209,
     cudaErrorIllegalState = 401,
@@ -229,6 +230,11 @@ struct cudaDeviceProp
     int warpSize;
 };
 
+struct cudaFuncAttributes
+{
+    int binaryVersion; ///< the only one there is
+};
+
 struct cudaLaunchConfig_t
 {
     dim3 gridDim, blockDim;
@@ -245,6 +251,7 @@ cudaError_t cudaRuntimeGetVersion(int *version);
 cudaError_t cudaGetDeviceCount(int *num_devices);
 cudaError_t cudaSetDevice(int device);
 cudaError_t cudaGetDeviceProperties(cudaDeviceProp *properties, int device);
+cudaError_t cudaFuncGetAttributes(cudaFuncAttributes *attributes, const void *kernel);
 cudaError_t cudaDeviceSynchronize();
 cudaError_t cudaStreamCreate(cudaStream_t *stream);
 cudaError_t cudaStreamDestroy(cudaStream_t stream);

@@ -280,6 +280,19 @@ static bool parse_options(const bench_kind *kind, scree_bench_request *request, 
     return check_together(kind, request);
 }
 
+/// Before anything is measured: can the result be written where it shall go? Leaves no file behind.
+static scree_status check_place(const scree_bench_request *request, scree_report *report)
+{
+    const char *path = request->json;
+    if (path == NULL || strcmp(path, "-") == 0) return SCREE_OK;
+    FILE *old = fopen(path, "r"), *file = fopen(path, "a");
+    if (file == NULL) scree_report_add(report, "--json %s could not be written", path);
+    else fclose(file);
+    if (file != NULL && old == NULL) remove(path);
+    if (old != NULL) fclose(old);
+    return file != NULL ? SCREE_OK : SCREE_WRITE_FAILED;
+}
+
 /// The result to a file or to standard output.
 static scree_status write_json(const scree_bench *bench)
 {
@@ -308,8 +321,9 @@ static int run_benchmark(const bench_kind *kind, const scree_bench_request *requ
     scree_bench bench = {.request = request, .cases = json_array(), .report = &report, .is_quiet = is_quiet};
     omp_set_num_threads((int)request->threads);
     json_t *baseline = NULL;
-    scree_status status = SCREE_OK;
-    if (request->baseline != NULL) status = scree_bench_read_baseline(request, &baseline, &report);
+    scree_status status = check_place(request, &report);
+    if (status == SCREE_OK && request->baseline != NULL)
+        status = scree_bench_read_baseline(request, &baseline, &report);
     if (status == SCREE_OK) status = kind->run(&bench);
     if (status == SCREE_OK && request->json != NULL) status = write_json(&bench);
     if (status == SCREE_OK && baseline != NULL) scree_bench_compare(&bench, baseline);

@@ -19,7 +19,7 @@ PAGE = ROOT / "docs" / "theory" / "gpu_cost.md"
 
 # numbers of reals and of other bytes of each type
 TYPES = {"real": (1, 0), "vec3": (3, 0), "quat": (4, 0), "pose": (8, 0), "int32": (0, 4), "int64": (0, 8), "uint8": (0, 1),
-         "pair": (0, 8), "moving": (8, 0), "memory": (0, 8), "sphere": (4, 0), "side": (6, 0),
+         "pair": (0, 8), "moving": (8, 0), "memory": (0, 8), "sphere": (4, 0), "side": (6, 0), "box": (6, 0), "node": (6, 8),
          "start": (0, 32)}  # of a record: what is read of it lies in its first sector
 SECTOR = 32  # bytes, the least that a GPU moves
 
@@ -79,15 +79,67 @@ SPHERE_KERNELS = [
 ]
 NOT_IN_POINTS = {"radius", "moment", "torsion", "is_turning"}
 
-# which kernels a stage of scree bench is made of; a search comes every some steps and is not in the model
+# A search of candidate pairs, once in STEPS_PER_SEARCH: from boxes to rows, then the pairs of the narrow phase with what
+# they remember. The sorts are CUB's: a pass over eight bits reads and writes everything once, and one more reads the keys.
+# A leaf meets NODES nodes on its way through the tree, and BOXES leaves whose boxes it overlaps.
+NODES, BOXES = 82, 15
+SEARCH_KERNELS = [
+    ("scree_pair_keep", "pair", "src/contact/pair_memory_kernel.h",
+     dict(own="batch:int32 pairs:pair memory:memory*2 kept_i:int32 kept_j:int32", near="travel:real", far="travel:real"), None),
+    ("scree_boxes", "particle", "src/dynamics/neighbour_kernel.h",
+     dict(own="shape:int32 pose:pose boxes:box centres:vec3 radii:real"), 411),
+    ("scree_lbvh_bounds", "particle", "src/bvh/lbvh_build_kernel.h", dict(own="boxes:box"), 33),
+    ("scree_lbvh_codes", "particle", "src/bvh/lbvh_build_kernel.h", dict(own="boxes:box codes:int64 items:int32"), 132),
+    ("sort of codes", "particle", None, dict(own="codes:int64*17 items:int32*16"), None),
+    # the ends of a node are written at its split, anywhere
+    ("scree_lbvh_hierarchy", "particle", "src/bvh/lbvh_build_kernel.h",
+     dict(own="codes:int64", far="first_leaf:int32 last_leaf:int32"), 197),
+    ("scree_lbvh_left_turns", "particle", "src/bvh/lbvh_build_kernel.h", dict(own="last_leaf:int32 num_left_turns:uint8"), 25),
+    # two nodes a particle are written, one sibling is read
+    ("scree_lbvh_nodes", "particle", "src/bvh/lbvh_build_kernel.h",
+     dict(own="items:int32 first_leaf:int32*2 last_leaf:int32*2 num_left_turns:uint8*2 arrivals:int32*2 nodes:node*3",
+          far="boxes:box"), 148),
+    ("scree_particle_pairs", "particle", "src/bvh/broad_phase_kernel.h",
+     dict(own="nodes:node*2 centres:vec3 radii:real", far=f"nodes:node*{NODES} centres:vec3*{BOXES} radii:real*{BOXES}"), 2149),
+    ("scree_particle_pairs, per candidate", "pair", "src/bvh/broad_phase_kernel.h", dict(own="keys:int64"), None),
+    ("sort of pairs", "pair", None, dict(own="keys:int64*17"), None),
+    ("scree_pair_unpack", "pair", "src/bvh/broad_phase_kernel.h",
+     dict(own="keys:int64 pairs:pair second_keys:int64", near="first_as_i:int32"), 36),
+    ("sort by second body", "pair", None, dict(own="second_keys:int64*9"), None),
+    ("scree_pair_second_begin", "pair", "src/bvh/broad_phase_kernel.h", dict(own="second_keys:int64", near="first_as_j:int32"), 17),
+    ("scree_pair_row_begin", "particle", "src/bvh/broad_phase_kernel.h",
+     dict(own="first_as_i:int32 first_as_j:int32 row_begin:int64"), 10),
+    ("scree_pair_rows", "pair", "src/bvh/broad_phase_kernel.h",
+     dict(own="second_keys:int64 pairs:pair row_pairs:int32*2", near="row_begin:int64*2 first_as_i:int32 first_as_j:int32"), 23),
+    ("copies of poses", "particle", None, dict(own="pose:pose*4 travel:real"), None),
+    # once for each of four kinds of pairs
+    ("scree_pair_flag", "pair", "src/contact/pair_kinds_kernel.h",
+     dict(own="pairs:pair*4 places:int64*4", near="shape:int32*4", far="shape:int32*4"), 99),
+    ("scan of kinds", "pair", None, dict(own="places:int64*12"), 40),
+    ("scree_pair_scatter", "pair", "src/contact/pair_kinds_kernel.h", dict(own="places:int64 batch:int32"), 11),
+    ("scree_group_bounds", "pair", "src/contact/pair_groups_kernel.h",
+     dict(own="first:int32", near="begin:int32*2 end:int32*2"), None),
+    # sorted as before, so the old place is next to that of the pair before; end: and the beginning of the group
+    ("scree_pair_carry", "pair", "src/contact/pair_memory_kernel.h",
+     dict(own="batch:int32 pairs:pair memory:memory old_memory:memory second:int32", near="end:int32*2"), None),
+]
+# of meshes only
+FOR_MESHES = ("scree_pair_keep", "scree_group_bounds", "scree_pair_carry")
+
+# steps of the mill of scenes/tumbling_mill_polyhedra.yaml from one search to the next while it turns
+STEPS_PER_SEARCH = 17
+
+# which kernels a stage of scree bench is made of
 STAGES = {"predict": ("scree_predict",), "travel": ("scree_travel",),
           "contacts": ("scree_mesh_apart", "scree_overlap_pairs", "scree_mesh_gap", "scan of contacts", "scree_mesh_write", "scree_place_spheres",
                        "scree_sphere_sphere_count", "scree_sphere_sphere_write"),
           "history": ("scree_history_match",), "forces": ("scree_contact_force",), "gather": ("scree_gather",),
-          "correct": ("scree_correct",), "work": ("scree_work",)}
+          "correct": ("scree_correct",), "work": ("scree_work",),
+          "search": tuple(dict.fromkeys(name.split(",")[0] for name, *_ in SEARCH_KERNELS))}
 
-# the packing that is predicted
-COUNTS = {"particle": 1e6, "pair": 8e6, "contact": 4e6}
+# the packings that are predicted: candidates and touching pairs that scree bench packing and spheres have at these
+# indentations, 1e-3 and 5e-3 of the size (validation/performance)
+COUNTS = {"schoenhardt": {"particle": 1e6, "pair": 11.6e6, "contact": 2.6e6}, "sphere": {"particle": 1e6, "pair": 3.0e6, "contact": 2.46e6}}
 
 # name: GB/s, multiprocessors, GHz (boost), double and single operations per multiprocessor and clock (NVIDIA's data sheets)
 GPUS = {"V100 SXM2": (900, 80, 1.53, 32, 64), "A100 SXM 80 GB": (2039, 108, 1.41, 32, 64),
@@ -129,44 +181,86 @@ def bytes_of(arrays, precision, pairs_per_particle):
     return total
 
 
-def per_particle(per):
-    return COUNTS[per] / COUNTS["particle"]
+def kernels_of(name):
+    """Of a step of a bed."""
+    if name != "sphere":
+        return KERNELS
+    return SPHERE_KERNELS + [(name, per, source, without_moments(arrays), count) for name, per, source, arrays, count in KERNELS
+                             if not name.startswith(("scree_mesh", "scree_overlap"))]
 
 
-def seconds_of(kernel, gpu, precision, issue_overlap):
-    """Whichever takes longer: memory, issuing instructions, arithmetic on reals."""
+def search_of(name):
+    return [kernel for kernel in SEARCH_KERNELS if name != "sphere" or kernel[0] not in FOR_MESHES]
+
+
+def seconds_of(kernel, gpu, precision, issue_overlap, counts):
+    """Whichever takes longer: memory, issuing instructions, arithmetic on reals. What was not counted is taken for memory alone."""
     name, per, _, arrays, instructions = kernel
     bandwidth, num_processors, clock, double, single = GPUS[gpu]
     issue = issue_overlap if name == "scree_overlap_pairs" else ISSUE_STEADY
     per_second = num_processors * clock * 1e9 * issue
-    num = COUNTS[per]
-    return num * max(bytes_of(arrays, precision, per_particle(per)) / (STREAMED * bandwidth * 1e9),
+    num = counts[per]
+    instructions = instructions or 0
+    return num * max(bytes_of(arrays, precision, num / counts["particle"]) / (STREAMED * bandwidth * 1e9),
                      instructions / (per_second * 128),
                      REAL_SHARE * instructions / (per_second * (double if precision == "double" else single)))
 
 
-def table_of_kernels():
-    lines = ["| kernel | per | how many | bytes, double | bytes, single | instructions | GB a step, double |", "|---|---|---|---|---|---|---|"]
+def rows_of(kernels, counts):
+    """Lines of a table of kernels, the last one for all of them."""
+    lines = []
     sums = {"double": 0.0, "single": 0.0, "instructions": 0.0}
-    for name, per, _, arrays, instructions in KERNELS:
-        double, single = (bytes_of(arrays, precision, per_particle(per)) for precision in ("double", "single"))
-        lines.append(f"| {name} | {per} | {COUNTS[per]:.0e} | {double:.0f} | {single:.0f} | {instructions} | {double * COUNTS[per] / 1e9:.2f} |")
-        sums["double"] += double * COUNTS[per]
-        sums["single"] += single * COUNTS[per]
-        sums["instructions"] += instructions * COUNTS[per]
-    lines.append(f"| all | particle | 1e+06 | {sums['double'] / 1e6:.0f} | {sums['single'] / 1e6:.0f} | {sums['instructions'] / 1e6:.0f} | {sums['double'] / 1e9:.2f} |")
-    return "\n".join(lines)
+    for name, per, _, arrays, instructions in kernels:
+        num = counts[per]
+        double, single = (bytes_of(arrays, precision, num / counts["particle"]) for precision in ("double", "single"))
+        lines.append(f"| {name} | {per} | {num / 1e6:.3g}e+06 | {double:.0f} | {single:.0f} | {'' if instructions is None else instructions} | "
+                     f"{double * num / 1e9:.2f} |")
+        sums["double"] += double * num
+        sums["single"] += single * num
+        sums["instructions"] += (instructions or 0) * num
+    share = {key: value / counts["particle"] for key, value in sums.items()}
+    lines.append(f"| all | particle | {counts['particle'] / 1e6:.3g}e+06 | {share['double']:.0f} | {share['single']:.0f} | {share['instructions']:.0f} | "
+                 f"{sums['double'] / 1e9:.2f} |")
+    return lines
+
+
+def table_of_kernels():
+    return "\n".join(["| kernel | per | how many | bytes, double | bytes, single | instructions | GB a step, double |", "|---|---|---|---|---|---|---|"]
+                     + rows_of(KERNELS, COUNTS["schoenhardt"]))
+
+
+def table_of_search():
+    return "\n".join(["| kernel | per | how many | bytes, double | bytes, single | instructions | GB a search, double |", "|---|---|---|---|---|---|---|"]
+                     + rows_of(SEARCH_KERNELS, COUNTS["schoenhardt"]))
+
+
+def milliseconds(kernels, gpu, precision, issue_overlap, counts):
+    return 1e3 * sum(seconds_of(kernel, gpu, precision, issue_overlap, counts) for kernel in kernels)
 
 
 def table_of_times():
-    lines = ["| GPU | precision | all but the overlap [ms] | overlap [ms] | step [ms] | Bilock (2020), V100 [ms] |", "|---|---|---|---|---|---|"]
+    lines = ["| GPU | precision | all but overlap and search [ms] | overlap [ms] | step at rest [ms] | of a search, in a flow [ms] | Bilock (2020), V100 [ms] |",
+             "|---|---|---|---|---|---|---|"]
+    counts = COUNTS["schoenhardt"]
+    rest, overlap = ([k for k in KERNELS if (k[0] == "scree_overlap_pairs") == is_overlap] for is_overlap in (False, True))
     for gpu in GPUS:
         for precision in ("double", "single"):
-            rest = 1e3 * sum(seconds_of(k, gpu, precision, 1) for k in KERNELS if k[0] != "scree_overlap_pairs")
-            overlap = [1e3 * seconds_of(k, gpu, precision, issue) for issue in reversed(ISSUE_OVERLAP) for k in KERNELS
-                       if k[0] == "scree_overlap_pairs"]
-            lines.append(f"| {gpu} | {precision} | {rest:.1f} | {overlap[0]:.1f} to {overlap[1]:.1f} | "
-                         f"{rest + overlap[0]:.0f} to {rest + overlap[1]:.0f} | {THESIS[precision] if gpu.startswith('V100') else ''} |")
+            others = milliseconds(rest, gpu, precision, 1, counts)
+            low, high = (milliseconds(overlap, gpu, precision, issue, counts) for issue in reversed(ISSUE_OVERLAP))
+            search = milliseconds(SEARCH_KERNELS, gpu, precision, 1, counts) / STEPS_PER_SEARCH
+            lines.append(f"| {gpu} | {precision} | {others:.1f} | {low:.1f} to {high:.1f} | {others + low:.0f} to {others + high:.0f} | {search:.1f} | "
+                         f"{THESIS[precision] if gpu.startswith('V100') else ''} |")
+    return "\n".join(lines)
+
+
+def table_of_spheres():
+    lines = ["| GPU | precision | step at rest [ms] | of a search, in a flow [ms] |", "|---|---|---|---|"]
+    counts = COUNTS["sphere"]
+    for gpu in GPUS:
+        for precision in ("double", "single"):
+            step = milliseconds(kernels_of("sphere"), gpu, precision, 1, counts)
+            search = milliseconds(search_of("sphere"), gpu, precision, 1, counts) / STEPS_PER_SEARCH
+            lines.append(f"| {gpu} | {precision} | {step:.1f} | {search:.1f} |")
     return "\n".join(lines)
 
 
@@ -179,12 +273,10 @@ def without_moments(arrays):
 def stage_bytes(case, precision):
     """Bytes that a step of a measured bed moves in each stage, by the model."""
     num = {"particle": case["particles"], "pair": case["pairs"], "contact": case["contacts"]}
-    kernels = KERNELS
-    if case["name"] == "sphere":
-        kernels = SPHERE_KERNELS + [(name, per, source, without_moments(arrays), count) for name, per, source, arrays, count in KERNELS
-                                    if not name.startswith(("scree_mesh", "scree_overlap"))]
-    return {stage: sum(bytes_of(arrays, precision, num[per] / num["particle"]) * num[per] for name, per, _, arrays, _ in kernels
-                       if name.split(",")[0] in names) for stage, names in STAGES.items()}
+    moved = {stage: sum(bytes_of(arrays, precision, num[per] / num["particle"]) * num[per] for name, per, _, arrays, _
+                        in kernels_of(case["name"]) + search_of(case["name"]) if name.split(",")[0] in names) for stage, names in STAGES.items()}
+    moved["search"] *= case["searches_per_step"]
+    return moved
 
 
 def table_achieved(result):
@@ -199,7 +291,7 @@ def table_achieved(result):
                   "| stage | ms a step | MB of the model | GB/s | of the copy |", "|---|---|---|---|---|"]
         for stage, times in case["stages"].items():
             seconds = times["wall_seconds"]
-            if stage not in moved or seconds <= 0:
+            if not moved.get(stage) or seconds <= 0:
                 lines.append(f"| {stage} | {1e3 * seconds:.3f} |  |  |  |")
                 continue
             rate = moved[stage] / seconds
@@ -228,7 +320,8 @@ def what_lacks(result, particles, host=None):
 
 
 def with_tables(page):
-    for name, table in (("kernels", table_of_kernels()), ("times", table_of_times())):
+    for name, table in (("kernels", table_of_kernels()), ("search", table_of_search()), ("times", table_of_times()),
+                        ("spheres", table_of_spheres())):
         page, num = re.subn(rf"(<!-- {name} -->\n).*?(<!-- end -->)", lambda m: m[1] + table + "\n" + m[2], page, flags=re.DOTALL)
         if num != 1:
             raise SystemExit(f"{PAGE} has no place for the table of {name}")
@@ -251,7 +344,7 @@ def main():
             print(lack)
             sys.exit(3)
     else:
-        print(table_of_kernels(), table_of_times(), sep="\n\n")
+        print(table_of_kernels(), table_of_search(), table_of_times(), table_of_spheres(), sep="\n\n")
 
 
 if __name__ == "__main__":

@@ -25,14 +25,18 @@ PRECISIONS = {"double": "Double precision", "float": "Single precision"}
 REASONS = {
     "scree_particle_pairs": "32 keys wait in a batch, so that one atomic serves them all; runs at neighbour searches only",
     "scree_wall_pairs": "as scree_particle_pairs",
-    "scree_overlap_pairs": "a whole overlap by a team of lanes, with all registers there are: one of them waits while two triangles are "
-    "decided side by side by the hierarchy, which is rare",
-    "scree_overlap_patches": "as scree_overlap_pairs; telling patches apart, by one lane, sums over the edges of each tree of corners anew; "
+    "scree_overlap_patches": "as scree_overlap_pairs in double precision; telling patches apart, by one lane, sums over the edges of each tree of corners anew; "
     "only where a scene asks for patches",
 }
 
 # the same in one precision only
-REASONS_IN = {"double": {}, "float": {}}
+REASONS_IN = {
+    "double": {
+        "scree_overlap_pairs": "a whole overlap by a team of lanes, with all registers there are: one of them waits while two triangles "
+        "are decided side by side by the hierarchy, which is rare",
+    },
+    "float": {},
+}
 
 HEAD = """# What the kernels take on a GPU
 

@@ -11,7 +11,7 @@ ROOT = Path(os.environ.get("SCREE_SOURCE_DIR", Path(__file__).parents[2]))
 sys.path.insert(0, str(ROOT / "tools"))
 import gpu_cost  # noqa: E402
 
-FROM_SOURCES = [kernel for kernel in gpu_cost.KERNELS if kernel[2]]
+FROM_SOURCES = [kernel for kernel in gpu_cost.KERNELS + gpu_cost.SEARCH_KERNELS if kernel[2]]
 OF_SPHERES = gpu_cost.SPHERE_KERNELS
 
 
@@ -32,12 +32,14 @@ def test_arrays_of_the_source_are_in_the_model(source):
     text = (ROOT / source).read_text()
     used = set(re.findall(r"\ba(?:->|\.)(?:\w+\.)?(\w+)\[", text))
     known = set().union(*(named(kernel) for kernel in FROM_SOURCES if kernel[2] == source))
-    # not of the steady step of polyhedra: boxes are the search's, patches those of several contacts of a pair, sums are
-    # one per 256 contacts, area and torque vectors are for one force law, shapes for gaps that are used up and where pairs are told apart by their work, rolling moments for rolling resistance
-    elsewhere = {"boxes", "centres", "radii", "pairs", "patch", "arm", "old_patch", "old_arm", "old_bodies", "sums",
+    # in neither a step of polyhedra nor a search: patches are those of several contacts of a pair, walls few, sums and bounds of chunks
+    # one per 256 contacts and in all, area and torque vectors are for one force law, shapes for gaps that are used up and where pairs are told apart by their work, rolling moments for rolling resistance
+    elsewhere = {"walls", "chunk_bounds", "pairs", "patch", "arm", "old_patch", "old_arm", "old_bodies", "sums",
                  "area_vector", "torque_vector", "kept_levers", "shape", "shapes", "rolling_moment", "slices", "laws"}
     if source.endswith("gather_kernel.h"):
         elsewhere |= {"bodies", "normal_force", "tangential_force", "moment", "pose"}  # only where the forces leave no sides: on the CPU
+    if source.endswith("pair_groups_kernel.h"):
+        elsewhere |= {"second"}  # looked up by scree_pair_carry, which has it
     assert used - known <= elsewhere, f"{source} also uses {sorted(used - known - elsewhere)}: put them into tools/gpu_cost.py"
 
 
@@ -53,6 +55,7 @@ def measured(**case):
     stages = {name: {"wall_seconds": 1e-3} for name in ("predict", "search", "gather", "other")}
     return {"machine": {"precision": "double"},
             "cases": [dict({"name": "schoenhardt", "particles": 1000, "pairs": 8000, "contacts": 4000, "wall_seconds": 4e-3, "stages": stages,
+                       "searches_per_step": 0.05,
                             "bytes": {"peak_resident": 10_000_000},
                             "device": {"name": "some GPU", "copy_bytes_per_second": 2e9, "scene_bytes": 1_000_000, "free_bytes": 9_000_000}}, **case)]}
 
@@ -68,11 +71,34 @@ def test_achieved_is_bytes_over_time():
     # 408 bytes of each of a thousand in a millisecond, a fifth of what a copy moves; gathering by particle, by candidate and by contact
     assert rows["predict"].split(" | ") == [" 0.4", "0.4", "20 % "]
     assert rows["gather"].split(" | ")[0] == f" {(100 * 1000 + 36 * 8000 + 112 * 4000) / 1e6:.1f}"
-    assert not rows["search"].replace("|", "").strip() and not rows["other"].replace("|", "").strip()
+    assert not rows["other"].replace("|", "").strip() and float(rows["search"].split(" | ")[0]) > 0
+    # nothing is known of a bed that was never searched
+    rows = dict(re.findall(r"^\| (\w+) \| 1.000 \|(.*)\|$", gpu_cost.table_achieved(measured(searches_per_step=0)), re.MULTILINE))
+    assert not rows["search"].replace("|", "").strip()
+
+
+def test_searches_are_shared_by_their_steps():
+    often, seldom = (gpu_cost.stage_bytes(measured(searches_per_step=share)["cases"][0], "double")["search"] for share in (1, 0.125))
+    assert often == 8 * seldom > 0
+    # a particle's box, its share of the keys' passes, and 8 bytes of each pair's key go through it
+    assert often > 1000 * (48 * 3 + 17 * 8) + 8000 * 26 * 8
+    # spheres remember nothing of a pair
+    sphere = gpu_cost.stage_bytes(measured(searches_per_step=1, name="sphere")["cases"][0], "double")["search"]
+    memory = [kernel for kernel in gpu_cost.SEARCH_KERNELS if kernel[0] in gpu_cost.FOR_MESHES]
+    assert len(memory) == 3 and often - sphere == pytest.approx(sum(8000 * gpu_cost.bytes_of(kernel[3], "double", 8) for kernel in memory))
+
+
+def test_passes_of_the_sorts():
+    # one over each 8 of the bits of a key that are sorted by, and one that reads; src/bvh/broad_phase.c sorts by all and by the upper 32
+    arrays = {kernel[0]: dict((name, num) for name, _, num in gpu_cost.items(kernel[3]["own"])) for kernel in gpu_cost.SEARCH_KERNELS
+              if kernel[0].startswith("sort")}
+    assert arrays == {"sort of codes": {"codes": 17, "items": 16}, "sort of pairs": {"keys": 17}, "sort by second body": {"second_keys": 9}}
+    source = (ROOT / "src" / "bvh" / "broad_phase.c").read_text()
+    assert re.findall(r"scree_sort\(.*, (\d+)\);", source) == ["32", "0"]
 
 
 def test_every_kernel_of_the_model_is_in_one_stage():
-    for kernels in (gpu_cost.KERNELS, OF_SPHERES):
+    for kernels in (gpu_cost.KERNELS, gpu_cost.SEARCH_KERNELS, OF_SPHERES):
         for kernel in kernels:
             assert sum(kernel[0].split(",")[0] in names for names in gpu_cost.STAGES.values()) == 1, kernel[0]
 

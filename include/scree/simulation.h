@@ -36,7 +36,7 @@ extern "C"
         int64_t num_pairs;             ///< candidate pairs now
         int64_t num_contacts;          ///< contacts now
         int64_t num_rebuilds;          ///< neighbour searches so far
-        int64_t num_without_normal;    ///< overlaps without a normal so far: no force, see overlap.h
+        int64_t num_without_normal;    ///< overlaps above rounding without a normal so far: no force
         int64_t num_inside;            ///< centres of spheres met inside the solid of a mesh so far, step by step
         int64_t num_fallbacks;         ///< overlaps repeated with the hierarchy so far
         double worst_residual;         ///< worst certificate so far

@@ -180,7 +180,7 @@ extern "C"
         double centre[3];        ///< [m] rotate: a point of the axis
         double angular_velocity; ///< [rad/s] rotate
         double start, end;       ///< [s]; default 0 and never
-        bool opens;              ///< parts from walls that it touches at the start, as it should; default false
+        bool opens;              ///< may part from, or slide through, walls that it touches at the start; default false
     } scree_motion_def;
 
     typedef struct scree_wall_def

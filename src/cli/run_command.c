@@ -70,6 +70,7 @@ typedef struct run_state
     int64_t start_step;
     bool has_warned;        ///< of a time step that is too long
     bool has_warned_inside; ///< of a sphere whose centre is inside a solid
+    bool has_warned_lost;   ///< of bodies in each other without a force
     bool has_warned_shared; ///< of other processes on the cores of its threads
     double watched_clock;   ///< when they were last looked for
     long watched_switches;  ///< interruptions by them until then
@@ -248,6 +249,20 @@ static void warn_of_inside(run_state *run)
         "t = %g s: the centre of a sphere is inside the solid of a wall or a particle, below the surface; "
         "it is pushed out where the surface is nearest. Contacts are too soft for the speeds, or the step "
         "too long: raise youngs_modulus or choose a smaller time.step",
+        scree_simulation_time(run->simulation));
+    tell_report(run);
+}
+
+/// Bodies in each other without a force, once.
+static void warn_of_lost_overlaps(run_state *run)
+{
+    if (run->has_warned_lost || scree_simulation_counters(run->simulation).num_without_normal == 0) return;
+    run->has_warned_lost = true;
+    scree_report_warn(
+        &run->report,
+        "t = %g s: a polyhedron is inside another body, or goes through it: no direction leads out, and such a contact "
+        "has no force. Contacts are too soft for the speeds, or the step too long: raise youngs_modulus or choose a "
+        "smaller time.step; series.csv counts such contacts as without_normal",
         scree_simulation_time(run->simulation));
     tell_report(run);
 }
@@ -454,6 +469,7 @@ static scree_status advance(run_state *run)
         if (status != SCREE_OK) break;
         warn_of_time_step(run);
         warn_of_inside(run);
+        warn_of_lost_overlaps(run);
         warn_of_sharing(run);
         show_progress_sometimes(run);
     }

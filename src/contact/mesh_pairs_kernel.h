@@ -123,6 +123,15 @@ SCREE_FN scree_vec3 scree_known_direction(const scree_mesh_pairs_args *a, int32_
     return is_known ? scree_unpack_direction(a->memory[m].direction) : scree_vec3_zero();
 }
 
+SCREE_FN bool scree_is_pair_lost(const scree_mesh_pairs_args *a, int32_t m, const scree_overlap_result *result)
+{
+    const scree_candidate_pair pair = a->pairs[a->batch[m]];
+    const scree_bodies *bodies = &a->bodies;
+    return scree_overlap_is_lost(result,
+                                 bodies->shapes[bodies->shape[pair.i]].bounding_radius * bodies->pose[pair.i].scale,
+                                 bodies->shapes[bodies->shape[pair.j]].bounding_radius * bodies->pose[pair.j].scale);
+}
+
 /// Notes the `num` results of entry m, and keeps those that touch as far as there is room.
 SCREE_FN void scree_mesh_pair_note(const scree_mesh_pairs_args *a, int32_t m, const scree_overlap_result *results,
                                    int32_t num)
@@ -130,7 +139,8 @@ SCREE_FN void scree_mesh_pair_note(const scree_mesh_pairs_args *a, int32_t m, co
     int64_t num_contacts = 0;
     for (int32_t r = 0; r < num; ++r)
     {
-        if (results[r].status == SCREE_OVERLAP_NO_NORMAL) scree_atomic_count(&a->tally->num_without_normal, 1);
+        if (results[r].status == SCREE_OVERLAP_NO_NORMAL && scree_is_pair_lost(a, m, results + r))
+            scree_atomic_count(&a->tally->num_without_normal, 1);
         if (results[r].status != SCREE_OVERLAP_TOUCHING) continue;
         ++num_contacts;
         if (results[r].used_fallback) scree_atomic_count(&a->tally->num_fallbacks, 1);

@@ -44,6 +44,16 @@ typedef struct scree_overlap_result
     bool used_fallback; ///< the certificate made the filtered scheme repeat with the hierarchy
 } scree_overlap_result;
 
+/// Have two bodies of these bounding radii a common volume that stands above rounding, and yet no normal? One is inside
+/// the other, or goes through it: no force parts them.
+SCREE_FN bool scree_overlap_is_lost(const scree_overlap_result *result, scree_real radius_a, scree_real radius_b)
+{
+    const scree_real larger = scree_max(radius_a, radius_b), smaller = scree_min(radius_a, radius_b);
+    // 1000 eps L times the area is noise, and no common area is larger than that of the smaller sphere
+    return result->status == SCREE_OVERLAP_NO_NORMAL &&
+           result->volume > 13000 * SCREE_REAL_EPSILON * larger * smaller * smaller;
+}
+
 /// Buffers of one thread; grows when told. Start from {0}.
 typedef struct scree_overlap_workspace scree_overlap_workspace;
 scree_overlap_workspace *scree_overlap_workspace_create(void); ///< NULL: out of memory

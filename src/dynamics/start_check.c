@@ -1,188 +1,211 @@
 #include "dynamics/start_check.h"
 
-#include "contact/closest_point_kernel.h"
-#include "dynamics/step_buffers.h"
-
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-enum
-{
-    MAX_TOLD = 5 ///< particles of one fault that are named; the others are counted
-};
+/// Particles that may be outside of the walls and are compared with all others; more are not worth the time.
+#define MAX_COMPARED 1000
 
-/// Bodies that start deeper inside each other than any contact law is meant for.
-#define MAX_INDENTATION 0.05
+/// Share of its radius by which a particle that flies by is taken for larger.
+#define ROUNDING 0.01
 
 static double bounding_radius(const scree_simulation *s, int64_t i)
 {
     return (double)s->particle_shapes[s->particles.shape[i]].view.bounding_radius * (double)s->particles.scale[i];
 }
 
-/// "particle 3 of "fill" at (1, 2, 3)"
-typedef struct particle_text
+void scree_tell_more(scree_report *report, int64_t num, const char *what)
 {
-    char text[400];
-} particle_text;
+    if (num > SCREE_MAX_TOLD)
+        scree_report_add(report, "%lld more particles %s", (long long)(num - SCREE_MAX_TOLD), what);
+}
 
-static particle_text describe(const scree_simulation *s, int64_t i)
+scree_body_text scree_describe_body(const scree_simulation *s, int64_t body)
 {
-    const scree_vec3 x = s->particles.position[i];
-    particle_text p;
-    snprintf(p.text, sizeof p.text, "particle %lld of \"%.200s\" at (%g, %g, %g)", (long long)i,
-             s->scene->particles[s->particles.group[i]].name, (double)x.x, (double)x.y, (double)x.z);
+    const int64_t num_particles = s->particles.num_particles;
+    scree_body_text p;
+    if (body >= num_particles)
+    {
+        snprintf(p.text, sizeof p.text, "wall \"%.200s\"", s->scene->walls[body - num_particles].name);
+        return p;
+    }
+    const scree_vec3 x = s->particles.position[body];
+    snprintf(p.text, sizeof p.text, "particle %lld of \"%.200s\" at (%g, %g, %g)", (long long)body,
+             s->scene->particles[s->particles.group[body]].name, (double)x.x, (double)x.y, (double)x.z);
     return p;
 }
 
-static particle_text describe_body(const scree_simulation *s, int64_t body)
+/// The circle of a point of a wall that turns.
+static scree_box with_circle(scree_box box, const scree_motion_def *motion, scree_vec3 point)
 {
-    const int64_t num_particles = s->particles.num_particles;
-    particle_text p;
-    if (body < num_particles) snprintf(p.text, sizeof p.text, "particle %lld", (long long)body);
-    else snprintf(p.text, sizeof p.text, "wall \"%.200s\"", s->scene->walls[body - num_particles].name);
-    return p;
-}
-
-static void tell_more(scree_report *report, int64_t num, const char *what)
-{
-    if (num > MAX_TOLD) scree_report_add(report, "%lld more particles %s", (long long)(num - MAX_TOLD), what);
-}
-
-/// Contacts that are too deep. Returns their number.
-static int64_t check_contacts(const scree_simulation *s, scree_report *report)
-{
-    const scree_contact_list *contacts = &s->contacts;
-    int64_t num = 0;
-    for (int64_t c = 0; c < contacts->num_contacts; ++c)
+    const double *a = motion->axis, *c = motion->centre;
+    const double from[3] = {(double)point.x - c[0], (double)point.y - c[1], (double)point.z - c[2]};
+    const double squared = a[0] * a[0] + a[1] * a[1] + a[2] * a[2];
+    const double along = (from[0] * a[0] + from[1] * a[1] + from[2] * a[2]) / squared;
+    double middle[3], half[3], radius = 0;
+    for (int k = 0; k < 3; ++k)
     {
-        const scree_candidate_pair pair = contacts->bodies[c];
-        if ((double)contacts->indentation[c] <= MAX_INDENTATION * bounding_radius(s, pair.i)) continue;
-        if (++num > MAX_TOLD) continue;
-        scree_report_add(
-            report,
-            "%s starts %g m inside %s, more than %g of its bounding radius; move one of them or the region "
-            "of the particles",
-            describe(s, pair.i).text, (double)contacts->indentation[c], describe_body(s, pair.j).text, MAX_INDENTATION);
+        middle[k] = c[k] + along * a[k];
+        radius = hypot(radius, from[k] - along * a[k]);
     }
-    tell_more(report, num, "start inside others");
-    return num;
+    for (int k = 0; k < 3; ++k) half[k] = radius * sqrt(fmax(1 - a[k] * a[k] / squared, 0));
+    const scree_vec3 m = scree_vec3_make((scree_real)middle[0], (scree_real)middle[1], (scree_real)middle[2]);
+    const scree_vec3 h = scree_vec3_make((scree_real)half[0], (scree_real)half[1], (scree_real)half[2]);
+    return scree_box_with_point(scree_box_with_point(box, scree_vec3_sub(m, h)), scree_vec3_add(m, h));
 }
 
-/// Spheres with one centre: there is no direction to push them apart.
-static int64_t check_centres(const scree_simulation *s, scree_report *report)
-{
-    const scree_broad_phase *broad_phase = &s->broad_phase;
-    int64_t num = 0;
-    for (int64_t p = 0; p < broad_phase->num_pairs; ++p)
-    {
-        const scree_candidate_pair pair = broad_phase->pairs[p];
-        if (pair.j >= s->particles.num_particles) continue;
-        const scree_vec3 d = scree_vec3_sub(s->particles.position[pair.i], s->particles.position[pair.j]);
-        if (scree_vec3_dot(d, d) > 0 || s->shape_views[s->particles.shape[pair.i]].kind != SCREE_KIND_SPHERE ||
-            s->shape_views[s->particles.shape[pair.j]].kind != SCREE_KIND_SPHERE)
-            continue;
-        if (++num <= MAX_TOLD)
-            scree_report_add(report, "%s has the centre of particle %d; move one of them", describe(s, pair.i).text,
-                             pair.j);
-    }
-    tell_more(report, num, "share a centre");
-    return num;
-}
-
-/// How far below the surface of a wall's solid a point is [m]; negative outside.
-static double depth_in_wall(const scree_simulation *s, int32_t w, scree_vec3 point)
-{
-    const scree_shape_view *shape = s->shape_views + s->num_shapes + s->walls[w].shape;
-    const scree_pose pose = s->walls[w].pose;
-    const scree_vec3 p =
-        scree_mat3_apply_transposed(scree_mat3_from_quat(pose.orientation), scree_vec3_sub(point, pose.position));
-    if (scree_box_distance_squared(shape->box, p) > 0) return -1;
-    const scree_closest_point closest = scree_closest_on_mesh(shape, p);
-    return -(double)scree_approach_of(shape, &closest).height;
-}
-
-/// Particles wholly inside the solid of a wall: no surface is near to push them out.
-static int64_t check_solids(const scree_simulation *s, scree_report *report)
-{
-    const int64_t num_particles = s->particles.num_particles;
-    int64_t num = 0;
-    for (int32_t w = 0; w < s->num_walls; ++w)
-    {
-        if (!s->walls[w].is_present) continue;
-        for (int64_t i = 0; i < num_particles; ++i)
-        {
-            const double depth = depth_in_wall(s, w, s->particles.position[i]);
-            if (!(depth >= bounding_radius(s, i)) || ++num > MAX_TOLD) continue;
-            scree_report_add(report,
-                             "%s starts inside the solid of %s, %g m below its surface; walls are closed solids: move "
-                             "the particles out, or make a hollow wall of plates or of its shell",
-                             describe(s, i).text, describe_body(s, num_particles + w).text, depth);
-        }
-    }
-    tell_more(report, num, "start inside the solid of a wall");
-    return num;
-}
-
-/// World boxes of the walls; NULL: out of memory.
+/// World boxes of all places that the walls come to; NULL: out of memory.
 static scree_box *make_wall_boxes(const scree_simulation *s)
 {
     scree_box *boxes = malloc((size_t)(s->num_walls + 1) * sizeof *boxes);
     for (int32_t w = 0; boxes != NULL && w < s->num_walls; ++w)
     {
         const scree_shape_view *shape = s->shape_views + s->num_shapes + s->walls[w].shape;
+        const scree_wall_def *def = s->scene->walls + w;
         const scree_pose pose = s->walls[w].pose;
         const scree_mat3 rotation = scree_mat3_from_quat(pose.orientation);
+        scree_wall_state last;
+        scree_wall_state_at(def, s->scene->time.end, &last);
+        const scree_vec3 way = scree_vec3_sub(last.pose.position, pose.position);
         boxes[w] = scree_box_empty();
         for (int32_t v = 0; v < shape->num_vertices; ++v)
-            boxes[w] = scree_box_with_point(
-                boxes[w], scree_vec3_add(pose.position, scree_mat3_apply(rotation, shape->vertices[v])));
+        {
+            const scree_vec3 point = scree_vec3_add(pose.position, scree_mat3_apply(rotation, shape->vertices[v]));
+            boxes[w] = scree_box_with_point(boxes[w], point);
+            if (def->motion.kind == SCREE_MOTION_ROTATE) boxes[w] = with_circle(boxes[w], &def->motion, point);
+            else boxes[w] = scree_box_with_point(boxes[w], scree_vec3_add(point, way));
+        }
     }
     return boxes;
 }
 
-/// Does the ball come into the box on its way from `start` along `way`?
-static bool falls_into(scree_box box, scree_vec3 start, double radius, const double way[3])
+/// The free flight of a ball from x: x + v t + g t^2/2.
+typedef struct flight
 {
-    const double from[3] = {(double)start.x, (double)start.y, (double)start.z};
-    const double lower[3] = {(double)box.lower.x, (double)box.lower.y, (double)box.lower.z};
-    const double upper[3] = {(double)box.upper.x, (double)box.upper.y, (double)box.upper.z};
-    double begin = 0, end = INFINITY;
-    for (int k = 0; k < 3; ++k)
-    {
-        const double low = lower[k] - radius - from[k], high = upper[k] + radius - from[k];
-        if (way[k] == 0 && (low > 0 || high < 0)) return false;
-        if (way[k] == 0) continue;
-        begin = fmax(begin, fmin(low / way[k], high / way[k]));
-        end = fmin(end, fmax(low / way[k], high / way[k]));
-    }
-    return begin <= end;
+    double x[3], v[3], g[3], radius;
+} flight;
+
+static flight flight_of(const scree_simulation *s, int64_t i)
+{
+    const scree_vec3 x = s->particles.position[i], v = s->particles.velocity[i];
+    const double *g = s->scene->gravity;
+    return (flight){{(double)x.x, (double)x.y, (double)x.z},
+                    {(double)v.x, (double)v.y, (double)v.z},
+                    {g[0], g[1], g[2]},
+                    (1 + ROUNDING) * bounding_radius(s, i)};
 }
 
-/// Particles at rest that nothing is below: outside of the walls. Where walls are carried along, they may still come.
-/// Returns their number.
-static int64_t check_lost(const scree_simulation *s, scree_report *report)
+/// Is the ball in the box at time t? Where it comes in through side `skipped`, if not negative, it is on that.
+static bool is_in_at(const flight *f, scree_box box, double t, int skipped)
 {
-    const double *gravity = s->scene->gravity;
-    bool is_known = s->num_walls > 0 && (gravity[0] != 0 || gravity[1] != 0 || gravity[2] != 0);
-    for (int32_t w = 0; w < s->num_walls; ++w) is_known &= s->scene->walls[w].motion.kind != SCREE_MOTION_TRANSLATE;
-    scree_box *boxes = is_known ? make_wall_boxes(s) : NULL;
-    int64_t num = 0;
-    for (int64_t i = 0; boxes != NULL && i < s->particles.num_particles; ++i)
+    const double lower[3] = {(double)box.lower.x, (double)box.lower.y, (double)box.lower.z};
+    const double upper[3] = {(double)box.upper.x, (double)box.upper.y, (double)box.upper.z};
+    bool is_in = true;
+    for (int k = 0; k < 3; ++k)
     {
-        const scree_vec3 v = s->particles.velocity[i];
-        bool is_lost = scree_vec3_dot(v, v) == 0;
-        for (int32_t w = 0; w < s->num_walls && is_lost; ++w)
-            is_lost = !falls_into(boxes[w], s->particles.position[i], bounding_radius(s, i), gravity);
-        if (!is_lost || ++num > MAX_TOLD) continue;
-        scree_report_add(
-            report,
-            "%s is outside of the walls: none is below it, and it would fall for ever; move it, or make the "
-            "walls reach below it",
-            describe(s, i).text);
+        const double x = f->x[k] + t * (f->v[k] + 0.5 * f->g[k] * t);
+        is_in &= k == skipped || (x >= lower[k] - f->radius && x <= upper[k] + f->radius);
+    }
+    return is_in;
+}
+
+/// When the flight is at `place` along axis k: 0, 1 or 2 times, of which negative ones are in the past.
+static int times_at(const flight *f, int k, double place, double times[2])
+{
+    const double a = 0.5 * f->g[k], b = f->v[k], c = f->x[k] - place;
+    if (a == 0)
+    {
+        times[0] = -c / b;
+        return b != 0;
+    }
+    const double discriminant = b * b - 4 * a * c;
+    if (discriminant < 0) return 0;
+    const double q = -0.5 * (b + copysign(sqrt(discriminant), b));
+    times[0] = q / a;
+    times[1] = q != 0 ? c / q : 0;
+    return 2;
+}
+
+/// Does the ball ever come into the box? If so it is in it now, or comes in through one of the sides.
+static bool comes_into(const flight *f, scree_box box)
+{
+    const double lower[3] = {(double)box.lower.x, (double)box.lower.y, (double)box.lower.z};
+    const double upper[3] = {(double)box.upper.x, (double)box.upper.y, (double)box.upper.z};
+    if (is_in_at(f, box, 0, -1)) return true;
+    for (int side = 0; side < 6; ++side)
+    {
+        const int k = side % 3;
+        double times[2];
+        const int num = times_at(f, k, side < 3 ? lower[k] - f->radius : upper[k] + f->radius, times);
+        for (int n = 0; n < num; ++n)
+            if (times[n] >= 0 && is_in_at(f, box, times[n], k)) return true;
+    }
+    return false;
+}
+
+/// Do two balls meet if both fly freely? Seen from each other they fly straight on.
+static bool do_meet(const flight *a, const flight *b)
+{
+    double d[3], w[3], along = 0, squared = 0, distance = 0;
+    for (int k = 0; k < 3; ++k)
+    {
+        d[k] = a->x[k] - b->x[k];
+        w[k] = a->v[k] - b->v[k];
+        along += d[k] * w[k];
+        squared += w[k] * w[k];
+    }
+    const double t = squared > 0 ? fmax(-along / squared, 0) : 0;
+    for (int k = 0; k < 3; ++k) distance = hypot(distance, d[k] + t * w[k]);
+    return distance <= a->radius + b->radius;
+}
+
+/// May particle i meet another one: if both fly, or if one that walls hold up stays where it is?
+static bool may_meet_others(const scree_simulation *s, int64_t i, const bool *is_lost)
+{
+    const flight mine = flight_of(s, i);
+    for (int64_t j = 0; j < s->particles.num_particles; ++j)
+    {
+        if (j == i) continue;
+        const flight other = flight_of(s, j);
+        const scree_real r = (scree_real)other.radius;
+        const scree_vec3 x = s->particles.position[j], reach = scree_vec3_make(r, r, r);
+        const scree_box box = {scree_vec3_sub(x, reach), scree_vec3_add(x, reach)};
+        if (do_meet(&mine, &other) || (!is_lost[j] && comes_into(&mine, box))) return true;
+    }
+    return false;
+}
+
+/// Particles whose free flight meets no place that a wall comes to, and may meet no other particle. One that nothing
+/// moves may be waited for, and without walls all are meant to fly. Returns their number.
+static int64_t check_lost(const scree_simulation *s, scree_report *report, scree_status *status)
+{
+    const int64_t num_particles = s->particles.num_particles;
+    const double *g = s->scene->gravity;
+    const bool is_pulled = g[0] != 0 || g[1] != 0 || g[2] != 0;
+    if (s->num_walls == 0) return 0;
+    scree_box *boxes = make_wall_boxes(s);
+    bool *is_lost = calloc((size_t)num_particles + 1, sizeof *is_lost);
+    int64_t num = 0, num_compared = 0;
+    if (boxes == NULL || is_lost == NULL) *status = SCREE_OUT_OF_MEMORY;
+    for (int64_t i = 0; *status == SCREE_OK && i < num_particles; ++i)
+    {
+        const flight f = flight_of(s, i);
+        is_lost[i] = is_pulled || f.v[0] != 0 || f.v[1] != 0 || f.v[2] != 0;
+        for (int32_t w = 0; w < s->num_walls && is_lost[i]; ++w) is_lost[i] = !comes_into(&f, boxes[w]);
+    }
+    for (int64_t i = 0; *status == SCREE_OK && i < num_particles && num_compared < MAX_COMPARED; ++i)
+    {
+        if (!is_lost[i] || (++num_compared > 0 && may_meet_others(s, i, is_lost)) || ++num > SCREE_MAX_TOLD) continue;
+        scree_report_add(report,
+                         "%s is outside of the walls: it meets none of them, nor another particle, and would %s for "
+                         "ever; move it, or make the walls reach %s",
+                         scree_describe_body(s, i).text, is_pulled ? "fall" : "fly",
+                         is_pulled ? "below it" : "across its way");
     }
     free(boxes);
-    tell_more(report, num, "are outside of the walls");
+    free(is_lost);
+    scree_tell_more(report, num, "are outside of the walls");
     return num;
 }
 
@@ -194,14 +217,14 @@ static int64_t tell_outside_of_wall(const scree_simulation *s, const bool *is_ou
     int64_t num = 0;
     for (int64_t i = 0; i < num_particles; ++i)
     {
-        if (!is_outside[i] || ++num > MAX_TOLD) continue;
+        if (!is_outside[i] || ++num > SCREE_MAX_TOLD) continue;
         scree_report_add(
             report,
             "%s is outside of the closed %s, which is hollow to hold particles; move it inside, or, if the "
             "wall is in their way, take away its inner surface",
-            describe(s, i).text, describe_body(s, num_particles + vessel).text);
+            scree_describe_body(s, i).text, scree_describe_body(s, num_particles + vessel).text);
     }
-    tell_more(report, num, "are outside of the closed wall");
+    scree_tell_more(report, num, "are outside of the closed wall");
     return num;
 }
 
@@ -211,7 +234,7 @@ static void name_walls(const scree_simulation *s, char *text, size_t size)
     int32_t num = 0, k = 0;
     for (int32_t w = 0; w < s->num_walls; ++w) num += scree_wall_stays(s, w);
     int length = snprintf(text, size, "walls");
-    for (int32_t w = 0; w < s->num_walls && k < MAX_TOLD; ++w)
+    for (int32_t w = 0; w < s->num_walls && k < SCREE_MAX_TOLD; ++w)
     {
         if (!scree_wall_stays(s, w)) continue;
         ++k;
@@ -229,19 +252,19 @@ static int64_t tell_outside_of_walls(const scree_simulation *s, const bool *is_o
                                      scree_report *report)
 {
     const int64_t num_particles = s->particles.num_particles;
-    char names[80 * (MAX_TOLD + 1)];
+    char names[80 * (SCREE_MAX_TOLD + 1)];
     name_walls(s, names, sizeof names);
     int64_t num = 0;
     for (int64_t i = 0; i < num_particles; ++i)
     {
-        if (!is_outside[i] || ++num > MAX_TOLD) continue;
+        if (!is_outside[i] || ++num > SCREE_MAX_TOLD) continue;
         scree_report_add(report,
                          "%s is outside of what the %s close together, which holds %lld of %lld particles and has no "
                          "hole as wide as the smallest one; move it inside, or, if it belongs there, let a wall open "
                          "(motion.opens) or give it a time to go (removed_at, which may lie after the end)",
-                         describe(s, i).text, names, (long long)num_inside, (long long)num_particles);
+                         scree_describe_body(s, i).text, names, (long long)num_inside, (long long)num_particles);
     }
-    tell_more(report, num, "are outside of these walls");
+    scree_tell_more(report, num, "are outside of these walls");
     return num;
 }
 
@@ -256,16 +279,16 @@ static int64_t check_outside(const scree_simulation *s, scree_report *report, sc
     if (*status == SCREE_OK && vessel >= 0) num = tell_outside_of_wall(s, is_outside, vessel, report);
     else if (*status == SCREE_OK && num_inside > 0 && 2 * num_inside >= s->particles.num_particles)
         num = tell_outside_of_walls(s, is_outside, num_inside, report);
-    else if (*status == SCREE_OK) num = check_lost(s, report);
+    else if (*status == SCREE_OK) num = check_lost(s, report, status);
     free(is_outside);
     return num;
 }
 
 scree_status scree_check_start(const scree_simulation *simulation, scree_report *report)
 {
-    scree_status status = SCREE_OK;
-    const int64_t num_faults = check_contacts(simulation, report) + check_centres(simulation, report) +
-                               check_solids(simulation, report) + check_outside(simulation, report, &status);
+    int64_t num_faults;
+    scree_status status = scree_check_overlaps(simulation, report, &num_faults);
+    if (status == SCREE_OK) num_faults += check_outside(simulation, report, &status);
     if (status != SCREE_OK) return status;
     return num_faults > 0 ? SCREE_INVALID_INPUT : SCREE_OK;
 }

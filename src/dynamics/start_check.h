@@ -5,13 +5,36 @@
 
 #include "dynamics/state.h"
 
-/// Call with bodies placed and contacts found. Refused: particles too deep in others or wholly inside the solid of a
-/// wall, spheres with the same centre, particles outside of a closed vessel, of one wall or of several that hold most
-/// particles, or at rest where they would fall past all walls.
+/// Call with bodies placed and contacts found. Refused: particles too deep in others or inside another body, spheres
+/// with the same centre, particles outside of a closed vessel, of one wall or of several that hold most particles, or
+/// that would fly past all walls for ever.
 scree_status scree_check_start(const scree_simulation *simulation, scree_report *report);
 
-/// Refused: walls that reach into each other and move differently. Told: walls that touch at the start and part later.
-/// Call with walls placed.
+/// The first of these: bodies that start in each other, their number to *num_faults. SCREE_OUT_OF_MEMORY.
+scree_status scree_check_overlaps(const scree_simulation *simulation, scree_report *report, int64_t *num_faults);
+
+/// Particles of one fault that are named; the others are counted.
+#define SCREE_MAX_TOLD 5
+
+/// "particle 3 of "fill" at (1, 2, 3)" or "wall "floor""
+typedef struct scree_body_text
+{
+    char text[400];
+} scree_body_text;
+
+/// Counts those of `num` particles that were not named.
+void scree_tell_more(scree_report *report, int64_t num, const char *what);
+
+/// Of a particle, or of wall `body` - num_particles.
+scree_body_text scree_describe_body(const scree_simulation *simulation, int64_t body);
+
+/// How far a point is below the surface of the mesh of a body [m]; negative outside; -INFINITY farther than `reach`
+/// from its box, and of a body without a mesh. *normal is that of the nearest surface, outwards; NULL: not asked for.
+double scree_depth_in_mesh(const scree_simulation *simulation, int64_t body, scree_vec3 point, double reach,
+                           scree_vec3 *normal);
+
+/// Refused: walls that reach into each other and move differently, unless one opens or they turn on each other where
+/// they are round. Told: walls that touch at the start and part later. Call with walls placed.
 scree_status scree_check_walls(const scree_simulation *simulation, scree_report *report);
 
 /// Which particles are in no closed vessel: is_outside (num_particles), not touched if no wall is one. `vessel` gets

@@ -1,14 +1,30 @@
 /// \file wall_check.c
-/// Walls that would be torn apart: two that reach into each other at the start belong together, and if both move, they
-/// must move as one. A wall that stands still may be moved in or along: a piston in its cylinder, a drum between
-/// plates. Where two that touch at the start part later, a door or a lid is opened, or a mistake made: that is told,
-/// unless the scene says that it opens.
+/// Walls that would be torn apart: two that reach into each other at the start belong together and must move as one, be
+/// one of them at rest or not, unless the scene says that they may part or slide along each other, or nothing opens
+/// because the walls are round where they meet: a shaft in an end plate, a drum and its lifters between plates. Where
+/// two that touch at the start part later, a door or a lid is opened, or a mistake made: that is told, unless the scene
+/// says that it opens.
 #include "contact/mesh_gap_kernel.h"
 #include "contact/overlap.h"
 #include "dynamics/start_check.h"
 #include "dynamics/walls.h"
 
 #include <math.h>
+
+enum
+{
+    NUM_POINTS = 16384, ///< spread over the box that two walls have in common
+    NUM_TURNS = 7       ///< angles by which they are turned
+};
+
+/// [rad] not a share of a whole turn, so that no even division of a wheel turns into itself.
+#define TURN 0.897
+
+/// Share of the distance from the axis by which the flat sides of a round wall may miss the circle.
+#define ROUND_TOLERANCE 0.05
+
+/// A surface faces along the axis if the cosine of the angle between the two is larger.
+#define FLAT_COSINE 0.9
 
 /// Share of the size below which a common volume is rounding: of sides that lie flush.
 #define REACH_TOLERANCE 1e-9
@@ -29,6 +45,17 @@ static double length(const double v[3]) { return sqrt(v[0] * v[0] + v[1] * v[1] 
 /// Is `v` zero beside numbers of size `scale`?
 static bool is_nothing(const double v[3], double scale) { return length(v) <= SAME_TOLERANCE * scale; }
 
+/// The same axis of rotation, in either sense.
+static bool is_same_axis(const scree_motion_def *a, const scree_motion_def *b)
+{
+    double offset[3], across[3], apart[3];
+    for (int k = 0; k < 3; ++k) offset[k] = b->centre[k] - a->centre[k];
+    cross(a->axis, b->axis, apart);
+    cross(offset, a->axis, across);
+    return is_nothing(apart, length(a->axis) * length(b->axis)) &&
+           is_nothing(across, length(a->axis) * (length(a->centre) + length(b->centre) + length(offset)));
+}
+
 static bool is_same_motion(const scree_motion_def *a, const scree_motion_def *b)
 {
     if (a->kind != b->kind || a->start != b->start || a->end != b->end) return false;
@@ -38,33 +65,20 @@ static bool is_same_motion(const scree_motion_def *a, const scree_motion_def *b)
                              a->velocity[2] - b->velocity[2]};
         return is_nothing(d, length(a->velocity));
     }
-    // the same axis of rotation, in either sense, turned by the same rate
     const double length_a = length(a->axis), length_b = length(b->axis);
-    double difference[3], offset[3], across[3];
+    double difference[3];
     for (int k = 0; k < 3; ++k)
-    {
         difference[k] = a->angular_velocity * a->axis[k] / length_a - b->angular_velocity * b->axis[k] / length_b;
-        offset[k] = b->centre[k] - a->centre[k];
-    }
-    cross(offset, a->axis, across);
-    return is_nothing(difference, fabs(a->angular_velocity)) &&
-           length(across) <= SAME_TOLERANCE * length_a * (length(a->centre) + length(b->centre) + length(offset));
+    return is_nothing(difference, fabs(a->angular_velocity)) && is_same_axis(a, b);
 }
 
-/// Do both move while both are there?
-static bool are_both_moving(const scree_wall_def *a, const scree_wall_def *b)
-{
-    if (a->motion.kind == SCREE_MOTION_FIXED || b->motion.kind == SCREE_MOTION_FIXED) return false;
-    return fmin(a->removed_at, b->removed_at) > fmin(a->motion.start, b->motion.start);
-}
-
-/// Does one move that is not said to open, while both are there, and do they not move as one?
-static bool are_moved_apart(const scree_wall_def *a, const scree_wall_def *b)
+/// Does one move that is not said to open, while both are there and before the end, and do they not move as one?
+static bool are_moved_apart(const scree_wall_def *a, const scree_wall_def *b, double end)
 {
     const scree_motion_def *x = &a->motion, *y = &b->motion;
     const double first =
         fmin(x->kind != SCREE_MOTION_FIXED ? x->start : INFINITY, y->kind != SCREE_MOTION_FIXED ? y->start : INFINITY);
-    if (x->opens || y->opens || !(first < fmin(a->removed_at, b->removed_at))) return false;
+    if (x->opens || y->opens || !(first < fmin(end, fmin(a->removed_at, b->removed_at)))) return false;
     return !(x->kind == SCREE_MOTION_FIXED && y->kind == SCREE_MOTION_FIXED) && !is_same_motion(x, y);
 }
 
@@ -147,6 +161,93 @@ static scree_status find_parting(const wall_pair *pair, double *time)
     return status;
 }
 
+/// The rotation that the walls make against each other, if it is one.
+static const scree_motion_def *find_turning(const scree_wall_def *a, const scree_wall_def *b)
+{
+    const scree_motion_def *x = &a->motion, *y = &b->motion;
+    if (x->kind == SCREE_MOTION_FIXED) return y->kind == SCREE_MOTION_ROTATE ? y : NULL;
+    if (x->kind != SCREE_MOTION_ROTATE) return NULL;
+    return y->kind == SCREE_MOTION_FIXED || (y->kind == SCREE_MOTION_ROTATE && is_same_axis(x, y)) ? x : NULL;
+}
+
+static scree_box box_of_wall(const wall_pair *pair, int k)
+{
+    const scree_pose pose = pair->s->walls[pair->wall[k]].pose;
+    const scree_mat3 rotation = scree_mat3_from_quat(pose.orientation);
+    scree_box box = scree_box_empty();
+    for (int32_t v = 0; v < pair->shape[k]->num_vertices; ++v)
+        box = scree_box_with_point(
+            box, scree_vec3_add(pose.position, scree_mat3_apply(rotation, pair->shape[k]->vertices[v])));
+    return box;
+}
+
+/// What a wall is about an axis, as far as points tell that are in both walls.
+typedef struct roundness
+{
+    bool is_round; ///< turned about the axis they stay in the wall
+    bool is_flat;  ///< the surface nearest to them faces along the axis, as that of an end plate
+} roundness;
+
+/// Takes a point into account.
+static void look_round(const wall_pair *pair, int k, const scree_motion_def *turning, scree_vec3 point,
+                       roundness *found)
+{
+    const double *axis = turning->axis, *centre = turning->centre, size = length(axis);
+    const double from[3] = {(double)point.x - centre[0], (double)point.y - centre[1], (double)point.z - centre[2]};
+    const double along = (from[0] * axis[0] + from[1] * axis[1] + from[2] * axis[2]) / (size * size);
+    double foot[3], radius[3], side[3];
+    const int64_t body = pair->s->particles.num_particles + pair->wall[k];
+    scree_vec3 normal;
+    scree_depth_in_mesh(pair->s, body, point, 0, &normal);
+    const double facing = (double)normal.x * axis[0] + (double)normal.y * axis[1] + (double)normal.z * axis[2];
+    found->is_flat = found->is_flat && fabs(facing) > FLAT_COSINE * size;
+    for (int m = 0; m < 3; ++m)
+    {
+        foot[m] = centre[m] + along * axis[m];
+        radius[m] = from[m] - along * axis[m];
+    }
+    cross(axis, radius, side);
+    const double margin = ROUND_TOLERANCE * length(radius);
+    for (int turn = 1; turn <= NUM_TURNS && found->is_round; ++turn)
+    {
+        const double c = cos(TURN * turn), s = sin(TURN * turn) / size;
+        const scree_vec3 turned = scree_vec3_make((scree_real)(foot[0] + c * radius[0] + s * side[0]),
+                                                  (scree_real)(foot[1] + c * radius[1] + s * side[1]),
+                                                  (scree_real)(foot[2] + c * radius[2] + s * side[2]));
+        found->is_round = scree_depth_in_mesh(pair->s, body, turned, margin, NULL) > -margin;
+    }
+}
+
+/// Does nothing open, because both walls are round where they meet, as a shaft in its plate, or one of them is there a
+/// plate across the axis, on which anything may turn? Looked at in points.
+static bool does_keep_its_place(const wall_pair *pair)
+{
+    const scree_wall_def *walls = pair->s->scene->walls;
+    const scree_motion_def *turning = find_turning(walls + pair->wall[0], walls + pair->wall[1]);
+    if (turning == NULL) return false;
+    const scree_box a = box_of_wall(pair, 0), b = box_of_wall(pair, 1);
+    const scree_vec3 lower = scree_vec3_max(a.lower, b.lower);
+    const scree_vec3 side = scree_vec3_sub(scree_vec3_min(a.upper, b.upper), lower);
+    roundness found[2] = {{true, true}, {true, true}};
+    const int64_t first = pair->s->particles.num_particles;
+    int num = 0;
+    for (int n = 1; n <= NUM_POINTS; ++n)
+    {
+        // evenly, and on no lattice: multiples of powers of the root of x^4 = x + 1
+        const double at[3] = {fmod(n * 0.8191725133961644, 1), fmod(n * 0.6710436067037893, 1),
+                              fmod(n * 0.5497004779019703, 1)};
+        const scree_vec3 point = scree_vec3_add(
+            lower, scree_vec3_make((scree_real)at[0] * side.x, (scree_real)at[1] * side.y, (scree_real)at[2] * side.z));
+        if (!(scree_depth_in_mesh(pair->s, first + pair->wall[0], point, 0, NULL) > 0) ||
+            !(scree_depth_in_mesh(pair->s, first + pair->wall[1], point, 0, NULL) > 0))
+            continue;
+        for (int k = 0; k < 2; ++k) look_round(pair, k, turning, point, found + k);
+        ++num;
+    }
+    const bool is_any_flat = (found[0].is_round && found[0].is_flat) || (found[1].is_round && found[1].is_flat);
+    return num > 0 && (is_any_flat || (found[0].is_round && found[1].is_round));
+}
+
 /// Refuses or warns of two walls that do not move as one. SCREE_INVALID_INPUT, SCREE_OUT_OF_MEMORY.
 static scree_status check_pair(const wall_pair *pair, scree_report *report)
 {
@@ -154,23 +255,23 @@ static scree_status check_pair(const wall_pair *pair, scree_report *report)
     nearness found;
     double time = INFINITY;
     scree_status status = find_nearness(pair, 0, &found);
-    if (status != SCREE_OK || found == APART) return status;
-    if (found == REACHING && are_both_moving(a, b))
+    if (status != SCREE_OK || found == APART || (found == REACHING && does_keep_its_place(pair))) return status;
+    if (found == REACHING)
     {
         scree_report_add(
             report,
             "walls \"%s\" and \"%s\" reach into each other, but move differently and so would be torn apart; give both "
             "the same motion (kind, rate, axis, centre, start and end), leave a gap between them, or set opens of a "
-            "motion that is meant to open them",
+            "motion that is meant to part them, as a door, or to slide through, as a piston",
             a->name, b->name);
         return SCREE_INVALID_INPUT;
     }
     status = find_parting(pair, &time);
     if (time < INFINITY)
         scree_report_warn(report,
-                          "walls \"%s\" and \"%s\" %s at the start and part at %.3g s; if one is meant to open, as "
+                          "walls \"%s\" and \"%s\" touch at the start and part at %.3g s; if one is meant to open, as "
                           "a door or a lid, set opens of its motion to true, or else give both the same motion",
-                          a->name, b->name, found == REACHING ? "reach into each other" : "touch", time);
+                          a->name, b->name, time);
     return status;
 }
 
@@ -183,7 +284,7 @@ scree_status scree_check_walls(const scree_simulation *simulation, scree_report 
     for (int32_t w = 1; w < simulation->num_walls; ++w)
         for (int32_t v = 0; v < w && worst != SCREE_OUT_OF_MEMORY; ++v)
         {
-            if (!are_moved_apart(walls + v, walls + w)) continue;
+            if (!are_moved_apart(walls + v, walls + w, simulation->scene->time.end)) continue;
             const scree_shape_view *views = simulation->shape_views + simulation->num_shapes;
             wall_pair pair = {simulation,
                               {v, w},

@@ -487,8 +487,9 @@ static const scree_scene_key motion_keys[] = {
      .meaning = "at rest from then on"},
     {.name = "opens",
      .default_text = "false",
-     .meaning = "whether it is meant to part from walls that it touches at the start, as a door, a gate or a lid: if "
-                "not, a run warns of it"},
+     .meaning = "whether it is meant to part from walls that it touches or reaches into at the start, or to slide "
+                "through them, as a door, a lid or a piston: if not, those that reach into each other are refused, "
+                "and a run warns of those that touch and part"},
 };
 static const scree_scene_section motion_section = {"walls[].motion", "Prescribed motion of a wall.", motion_fields,
                                                    motion_keys, COUNT(motion_keys)};
@@ -520,7 +521,7 @@ static const scree_scene_key wall_keys[] = {
     {.name = "motion",
      .default_text = "{}",
      .section = &motion_section,
-     .meaning = "prescribed motion; two walls that reach into each other and both move must move as one"},
+     .meaning = "prescribed motion; two walls that reach into each other must move as one, or one of them opens"},
     {.name = "removed_at",
      .unit = "s",
      .default_text = "never",

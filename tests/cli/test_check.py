@@ -111,6 +111,14 @@ def test_faults_that_need_the_meshes():
     assert "100000 are asked for" in crowded.stderr
 
 
+@pytest.mark.parametrize("still", ["lifters", "drum"])
+def test_a_mill_whose_lifters_do_not_turn_with_it(still):
+    """The slip of one key: the shell would turn away from the lifters that it holds."""
+    result = scree("check", scene("tumbling_mill"), "--set", f"walls.{still}.motion.kind=fixed")
+    assert result.returncode == 2
+    assert 'walls "drum" and "lifters" reach into each other, but move differently' in result.stderr
+
+
 @pytest.mark.parametrize(
     "content, message",
     [

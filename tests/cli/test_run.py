@@ -601,3 +601,23 @@ def test_threads_on_a_shared_machine_are_warned_of(scene, tmp_path, policy, is_w
             other.kill()
             other.wait()
     assert ("OMP_WAIT_POLICY=passive" in told.read_text()) == is_warned
+
+
+def test_a_body_that_is_shot_into_another_is_warned_of(tmp_path):
+    """A cube that is wholly inside another after one step: there is no force, and the run says so, once."""
+    cubes = ["{name: large, shape: large, material: stone, bodies: [{position: [0, 0, 0]}]}",
+             "{name: small, shape: small, material: stone, bodies: [{position: [0.14, 0, 0], velocity: [-100, 0, 0]}]}"]
+    for order in (0, 1):
+        path = tmp_path / f"scene{order}.yaml"
+        path.write_text(
+            "name: shot\ngravity: [0, 0, 0]\ntime: {end: 1e-3, step: 5e-4}\n"
+            "materials: [{name: stone, density: 2500, youngs_modulus: 1e5, poisson_ratio: 0.25}]\n"
+            "contact_laws: [{materials: [stone, stone], friction_coefficient: 0.5, damping_ratio: 0}]\n"
+            "shapes: [{name: large, source: box, size: 0.2}, {name: small, source: box, size: 0.01}]\n"
+            f"particles: [{cubes[order]}, {cubes[1 - order]}]\n"
+        )
+        done = subprocess.run([PROGRAM, "run", path, "-o", tmp_path / f"run{order}"], capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        assert done.stderr.count("a polyhedron is inside another body, or goes through it") == 1
+        summary = json.loads((tmp_path / f"run{order}" / "summary.json").read_text())
+        assert summary["counters"]["without_normal"] == 2 and summary["counters"]["contacts"] == 0

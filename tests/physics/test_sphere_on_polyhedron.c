@@ -46,7 +46,7 @@ static double force_ratio(fixture *f, scree_vec3 point, scree_vec3 direction, do
     scree_sphere_contact contact[3];
     bool is_inside;
     SCREE_CHECK_INT(scree_sphere_mesh_contacts(&f->cube.view, scree_sphere_to_mesh(centre, 1, &at_origin),
-                                               f->cube.view.tree.root, contact, 3, &is_inside),
+                                               &f->cube.view.tree.root, 1, contact, 3, &is_inside),
                     1);
     SCREE_CHECK_CLOSE(contact[0].indentation, depth, 16 * SCREE_REAL_EPSILON);
     double indentation;

@@ -1,9 +1,9 @@
 /// \file wall_check.c
 /// Walls that would be torn apart: two that reach into each other at the start belong together and must move as one, be
 /// one of them at rest or not, unless the scene says that they may part or slide along each other, or nothing opens
-/// because the walls are round where they meet: a shaft in an end plate, a drum and its lifters between plates. Where
-/// two that touch at the start part later, a door or a lid is opened, or a mistake made: that is told, unless the scene
-/// says that it opens.
+/// by that: a shaft turns in an end plate, a drum and its lifters between plates, a piston slides in its cylinder.
+/// Where two that touch at the start part later, a door or a lid is opened, or a mistake made: that is told, unless the
+/// scene says that it opens.
 #include "contact/mesh_gap_kernel.h"
 #include "contact/overlap.h"
 #include "dynamics/start_check.h"
@@ -14,7 +14,7 @@
 enum
 {
     NUM_POINTS = 16384, ///< spread over the box that two walls have in common
-    NUM_TURNS = 7       ///< angles by which they are turned
+    NUM_MOVES = 7       ///< places that they are moved to
 };
 
 /// [rad] not a share of a whole turn, so that no even division of a wheel turns into itself.
@@ -23,8 +23,8 @@ enum
 /// Share of the distance from the axis by which the flat sides of a round wall may miss the circle.
 #define ROUND_TOLERANCE 0.05
 
-/// A surface faces along the axis if the cosine of the angle between the two is larger.
-#define FLAT_COSINE 0.9
+/// Cosine, or one less the cosine, of the angle between a surface's normal and a direction that it lies in, or faces.
+#define EVEN_TOLERANCE 0.1
 
 /// Share of the size below which a common volume is rounding: of sides that lie flush.
 #define REACH_TOLERANCE 1e-9
@@ -161,13 +161,53 @@ static scree_status find_parting(const wall_pair *pair, double *time)
     return status;
 }
 
-/// The rotation that the walls make against each other, if it is one.
-static const scree_motion_def *find_turning(const scree_wall_def *a, const scree_wall_def *b)
+/// How wall 0 of a pair moves against wall 1.
+typedef struct relative_motion
 {
-    const scree_motion_def *x = &a->motion, *y = &b->motion;
-    if (x->kind == SCREE_MOTION_FIXED) return y->kind == SCREE_MOTION_ROTATE ? y : NULL;
-    if (x->kind != SCREE_MOTION_ROTATE) return NULL;
-    return y->kind == SCREE_MOTION_FIXED || (y->kind == SCREE_MOTION_ROTATE && is_same_axis(x, y)) ? x : NULL;
+    bool is_turning;
+    double direction[3]; ///< unit: of the axis, or of the way
+    double centre[3];    ///< [m] a point of the axis
+    double way;          ///< [m]
+} relative_motion;
+
+/// Two walls of which one rests, or that turn about one axis: otherwise false.
+static bool find_relative_motion(const wall_pair *pair, relative_motion *found)
+{
+    const scree_wall_def *a = pair->s->scene->walls + pair->wall[0], *b = pair->s->scene->walls + pair->wall[1];
+    const bool is_first = a->motion.kind != SCREE_MOTION_FIXED;
+    const scree_motion_def *motion = is_first ? &a->motion : &b->motion;
+    const bool is_other_moving = is_first && b->motion.kind != SCREE_MOTION_FIXED;
+    found->is_turning = motion->kind == SCREE_MOTION_ROTATE;
+    if (is_other_moving &&
+        (!found->is_turning || b->motion.kind != SCREE_MOTION_ROTATE || !is_same_axis(&a->motion, &b->motion)))
+        return false;
+    const double *along = found->is_turning ? motion->axis : motion->velocity;
+    const double last = fmin(fmin(pair->s->scene->time.end, motion->end), fmin(a->removed_at, b->removed_at));
+    found->way = (is_first ? 1 : -1) * (last - motion->start) * length(along);
+    for (int k = 0; k < 3; ++k)
+    {
+        found->direction[k] = along[k] / length(along);
+        found->centre[k] = motion->centre[k];
+    }
+    return true;
+}
+
+/// Where a point of the other wall comes to in wall k, in step 1 to NUM_MOVES; `margin`: how far outside it counts.
+static scree_vec3 moved_point(const relative_motion *motion, int k, scree_vec3 point, int step, double *margin)
+{
+    const double *axis = motion->direction, *centre = motion->centre;
+    const double from[3] = {(double)point.x - centre[0], (double)point.y - centre[1], (double)point.z - centre[2]};
+    const double along = from[0] * axis[0] + from[1] * axis[1] + from[2] * axis[2];
+    const double shift = (k == 0 ? -1 : 1) * motion->way * step / NUM_MOVES;
+    const double c = cos(TURN * step), s = sin(TURN * step);
+    double radius[3], side[3], moved[3];
+    for (int m = 0; m < 3; ++m) radius[m] = from[m] - along * axis[m];
+    cross(axis, radius, side);
+    *margin = motion->is_turning ? ROUND_TOLERANCE * length(radius) : 0;
+    for (int m = 0; m < 3; ++m)
+        moved[m] = motion->is_turning ? centre[m] + along * axis[m] + c * radius[m] + s * side[m]
+                                      : centre[m] + from[m] + shift * axis[m];
+    return scree_vec3_make((scree_real)moved[0], (scree_real)moved[1], (scree_real)moved[2]);
 }
 
 static scree_box box_of_wall(const wall_pair *pair, int k)
@@ -181,55 +221,43 @@ static scree_box box_of_wall(const wall_pair *pair, int k)
     return box;
 }
 
-/// What a wall is about an axis, as far as points tell that are in both walls.
-typedef struct roundness
+/// What a wall is to the other that moves in it, as far as points tell that are in both.
+typedef struct bearing
 {
-    bool is_round; ///< turned about the axis they stay in the wall
-    bool is_flat;  ///< the surface nearest to them faces along the axis, as that of an end plate
-} roundness;
+    bool holds;   ///< moved with the other they stay in the wall
+    bool is_even; ///< the surface nearest to them faces along the axis, as that of an end plate, or across the way
+} bearing;
 
 /// Takes a point into account.
-static void look_round(const wall_pair *pair, int k, const scree_motion_def *turning, scree_vec3 point,
-                       roundness *found)
+static void look_at_bearing(const wall_pair *pair, int k, const relative_motion *motion, scree_vec3 point,
+                            bearing *found)
 {
-    const double *axis = turning->axis, *centre = turning->centre, size = length(axis);
-    const double from[3] = {(double)point.x - centre[0], (double)point.y - centre[1], (double)point.z - centre[2]};
-    const double along = (from[0] * axis[0] + from[1] * axis[1] + from[2] * axis[2]) / (size * size);
-    double foot[3], radius[3], side[3];
     const int64_t body = pair->s->particles.num_particles + pair->wall[k];
+    const double *d = motion->direction;
     scree_vec3 normal;
     scree_depth_in_mesh(pair->s, body, point, 0, &normal);
-    const double facing = (double)normal.x * axis[0] + (double)normal.y * axis[1] + (double)normal.z * axis[2];
-    found->is_flat = found->is_flat && fabs(facing) > FLAT_COSINE * size;
-    for (int m = 0; m < 3; ++m)
+    const double facing = fabs((double)normal.x * d[0] + (double)normal.y * d[1] + (double)normal.z * d[2]);
+    found->is_even = found->is_even && (motion->is_turning ? facing > 1 - EVEN_TOLERANCE : facing < EVEN_TOLERANCE);
+    for (int step = 1; step <= NUM_MOVES && found->holds; ++step)
     {
-        foot[m] = centre[m] + along * axis[m];
-        radius[m] = from[m] - along * axis[m];
-    }
-    cross(axis, radius, side);
-    const double margin = ROUND_TOLERANCE * length(radius);
-    for (int turn = 1; turn <= NUM_TURNS && found->is_round; ++turn)
-    {
-        const double c = cos(TURN * turn), s = sin(TURN * turn) / size;
-        const scree_vec3 turned = scree_vec3_make((scree_real)(foot[0] + c * radius[0] + s * side[0]),
-                                                  (scree_real)(foot[1] + c * radius[1] + s * side[1]),
-                                                  (scree_real)(foot[2] + c * radius[2] + s * side[2]));
-        found->is_round = scree_depth_in_mesh(pair->s, body, turned, margin, NULL) > -margin;
+        double margin;
+        const scree_vec3 moved = moved_point(motion, k, point, step, &margin);
+        found->holds = scree_depth_in_mesh(pair->s, body, moved, margin, NULL) > -margin;
     }
 }
 
-/// Does nothing open, because both walls are round where they meet, as a shaft in its plate, or one of them is there a
-/// plate across the axis, on which anything may turn? Looked at in points.
-static bool does_keep_its_place(const wall_pair *pair)
+/// Does nothing open, because one wall bears the other: a plate across the axis, on which anything may turn, a face
+/// along the way, on which anything may slide, or because both are round where they meet, as a shaft in its plate?
+/// Looked at in points.
+static bool does_stay_closed(const wall_pair *pair)
 {
-    const scree_wall_def *walls = pair->s->scene->walls;
-    const scree_motion_def *turning = find_turning(walls + pair->wall[0], walls + pair->wall[1]);
-    if (turning == NULL) return false;
+    relative_motion motion;
+    if (!find_relative_motion(pair, &motion)) return false;
     const scree_box a = box_of_wall(pair, 0), b = box_of_wall(pair, 1);
     const scree_vec3 lower = scree_vec3_max(a.lower, b.lower);
     const scree_vec3 side = scree_vec3_sub(scree_vec3_min(a.upper, b.upper), lower);
-    roundness found[2] = {{true, true}, {true, true}};
     const int64_t first = pair->s->particles.num_particles;
+    bearing found[2] = {{true, true}, {true, true}};
     int num = 0;
     for (int n = 1; n <= NUM_POINTS; ++n)
     {
@@ -241,11 +269,11 @@ static bool does_keep_its_place(const wall_pair *pair)
         if (!(scree_depth_in_mesh(pair->s, first + pair->wall[0], point, 0, NULL) > 0) ||
             !(scree_depth_in_mesh(pair->s, first + pair->wall[1], point, 0, NULL) > 0))
             continue;
-        for (int k = 0; k < 2; ++k) look_round(pair, k, turning, point, found + k);
+        for (int k = 0; k < 2; ++k) look_at_bearing(pair, k, &motion, point, found + k);
         ++num;
     }
-    const bool is_any_flat = (found[0].is_round && found[0].is_flat) || (found[1].is_round && found[1].is_flat);
-    return num > 0 && (is_any_flat || (found[0].is_round && found[1].is_round));
+    const bool is_borne = (found[0].holds && found[0].is_even) || (found[1].holds && found[1].is_even);
+    return num > 0 && (is_borne || (motion.is_turning && found[0].holds && found[1].holds));
 }
 
 /// Refuses or warns of two walls that do not move as one. SCREE_INVALID_INPUT, SCREE_OUT_OF_MEMORY.
@@ -255,14 +283,14 @@ static scree_status check_pair(const wall_pair *pair, scree_report *report)
     nearness found;
     double time = INFINITY;
     scree_status status = find_nearness(pair, 0, &found);
-    if (status != SCREE_OK || found == APART || (found == REACHING && does_keep_its_place(pair))) return status;
+    if (status != SCREE_OK || found == APART || (found == REACHING && does_stay_closed(pair))) return status;
     if (found == REACHING)
     {
         scree_report_add(
             report,
             "walls \"%s\" and \"%s\" reach into each other, but move differently and so would be torn apart; give both "
             "the same motion (kind, rate, axis, centre, start and end), leave a gap between them, or set opens of a "
-            "motion that is meant to part them, as a door, or to slide through, as a piston",
+            "motion that is meant to part them, as a door, or to slide through",
             a->name, b->name);
         return SCREE_INVALID_INPUT;
     }

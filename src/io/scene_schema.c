@@ -488,7 +488,7 @@ static const scree_scene_key motion_keys[] = {
     {.name = "opens",
      .default_text = "false",
      .meaning = "whether it is meant to part from walls that it touches or reaches into at the start, or to slide "
-                "through them, as a door, a lid or a piston: if not, those that reach into each other are refused, "
+                "through them, as a door, a lid or a gate: if not, those that reach into each other are refused, "
                 "and a run warns of those that touch and part"},
 };
 static const scree_scene_section motion_section = {"walls[].motion", "Prescribed motion of a wall.", motion_fields,

@@ -402,9 +402,12 @@ static void check_turning(const char *moving, const char *resting, const char *m
                 "{radius: 0, height: 0.19},\n     {radius: 0.2, height: 0.19}, {radius: 0.2, height: -0.19}, "
                 "{radius: 0, height: -0.19}]}\n"
                 "  - {name: plate, source: box, size: [0.5, 0.5, 0.02], offset: [0, 0, 0.2]}\n"
+                "  - {name: piston, source: turned, segments: 24, profile: [{radius: 0, height: -0.05}, {radius: "
+                "0.205, "
+                "height: -0.05},\n     {radius: 0.205, height: 0.05}, {radius: 0, height: 0.05}]}\n"
                 "  - {name: wheel, source: box, size: [0.06, 0.02, 0.1], offset: [0.05, 0, 0.2], copies: 5}\n"
                 "  - {name: lifters, source: box, size: [0.03, 0.02, 0.3], offset: [0.19, 0, 0], copies: 8}\n" BALLS
-                "      - {position: [0.1, 0, 0]}\nwalls:\n%s%s",
+                "      - {position: [0.1, 0, 0.1]}\nwalls:\n%s%s",
                 walls[order], walls[1 - order]);
             char *messages = messages_of(text, is_refused ? SCREE_INVALID_INPUT : SCREE_OK);
             SCREE_CHECK((strstr(messages, "reach into each other, but move differently") != NULL) == is_refused);
@@ -417,10 +420,10 @@ static void test_walls_that_turn_in_others(void)
 {
 #define TURNING(axis, centre) \
     ", motion: {kind: rotate, axis: " axis ", centre: " centre ", angular_velocity: 3, start: 0.1}"
+#define SLIDING(velocity) ", motion: {kind: translate, velocity: " velocity "}"
     static const char *const about = TURNING("[0, 0, 1]", "[0, 0, 0.5]"), *const other =
                                                                               TURNING("[0, 0.3, 1]", "[0, 0, 0]");
     static const char *const beside = TURNING("[0, 0, 1]", "[0.01, 0, 0]");
-    static const char *const along = ", motion: {kind: translate, velocity: [0, 0, 0.1]}";
     // a shaft in a plate, and a drum in a plate
     check_turning("shape: shaft", "shape: plate", about, false);
     check_turning("shape: shell", "shape: plate", about, false);
@@ -428,8 +431,18 @@ static void test_walls_that_turn_in_others(void)
     check_turning("shape: shaft", "shape: plate", beside, false);
     check_turning("shape: shaft", "shape: shell, position: [0.2, 0, 0]", about, true);
     check_turning("shape: shaft", "shape: plate", other, true);
-    check_turning("shape: shaft", "shape: plate", along, true);
-    check_turning("shape: shaft", "shape: plate", ", motion: {kind: translate, velocity: [0, 0, 0.1], opens: true}",
+    // along its axis, until it leaves the plate, and across
+    check_turning("shape: shaft", "shape: plate", SLIDING("[0, 0, 0.1]"), false);
+    check_turning("shape: shaft", "shape: plate", SLIDING("[0, 0, 2]"), true);
+    check_turning("shape: shaft", "shape: plate", SLIDING("[0, 0.1, 0]"), false);
+    check_turning("shape: shaft", "shape: plate", SLIDING("[0, 0.5, 0]"), true);
+    check_turning("shape: plate", "shape: shaft", SLIDING("[0, 0, 0.1]"), false);
+    check_turning("shape: plate", "shape: shaft", SLIDING("[0, 0, 2]"), true);
+    // a plate as a piston in a shell that reaches into it, and one that leaves it
+    check_turning("shape: piston", "shape: shell", SLIDING("[0, 0, 0.1]"), false);
+    check_turning("shape: piston", "shape: shell", SLIDING("[0, 0, 0.3]"), true);
+    check_turning("shape: piston", "shape: shell", SLIDING("[0.01, 0, 0]"), true);
+    check_turning("shape: piston", "shape: shell", ", motion: {kind: translate, velocity: [0, 0, 0.3], opens: true}",
                   false);
     // a wheel that is not round, on a plate, on one that begins beside the axis, and on a shaft
     check_turning("shape: wheel", "shape: plate", about, false);

@@ -33,29 +33,29 @@ KERNELS = [
     ("scree_travel", "particle", "src/dynamics/neighbour_kernel.h",
      dict(own="shape:int32 pose:pose searched_pose:pose last_pose:pose*2 travel:real*2"), 320),
     ("scree_mesh_apart", "pair", "src/contact/mesh_pairs_kernel.h",
-     dict(own="batch:int32 active:int32 first_of_pair:int64 pairs:pair memory:memory", near="travel:real", far="travel:real"), 30),
+     dict(own="batch:int32 active:int32 first_of_pair:int32 pairs:pair memory:memory", near="travel:real", far="travel:real"), 30),
     ("scree_overlap_pairs", "contact", "src/contact/overlap_pairs_kernel.h",
      dict(own="active:int32 pairs:pair memory:memory*2", near="pose:pose shape:int32", far="pose:pose shape:int32"),
      13925),
     # only looks: at rest no gap is used up
     ("scree_mesh_gap", "pair", "src/contact/mesh_pairs_kernel.h", dict(own="memory:memory"), 6),
-    ("scan of contacts", "pair", None, dict(own="first_of_pair:int64*3"), 10),
+    ("scan of contacts", "pair", None, dict(own="first_of_pair:int32*3"), 10),
     ("scree_mesh_write", "contact", "src/contact/mesh_pairs_kernel.h",
      dict(own="kept:real*18 first_kept:int32*2 pairs:pair bodies:pair patch:int32 volume:real indentation:real radius:real "
-              "normal:vec3 arm:vec3 first_of_pair:int64"), 60),
+              "normal:vec3 arm:vec3 first_of_pair:int32"), 60),
     ("scree_history_match", "pair", "src/contact/history_kernel.h",
-     dict(own="first_of_pair:int64 old_first_of_pair:int64 old_of_contact:int64 is_continued:uint8*2"), 52),
+     dict(own="first_of_pair:int32 old_first_of_pair:int32 old_of_contact:int32 is_continued:uint8*2"), 52),
     ("scree_contact_force", "contact", "src/forces/contact_force_kernel.h",
-     dict(own="bodies:pair volume:real indentation:real radius:real normal:vec3 arm:vec3 old_of_contact:int64 spring_force:vec3*2 "
+     dict(own="bodies:pair volume:real indentation:real radius:real normal:vec3 arm:vec3 old_of_contact:int32 spring_force:vec3*2 "
               "tangential_stiffness:real*2 torsion:real*2 spring_energy:real*2 elastic_energy:real*2 "
               "normal_force:vec3 tangential_force:vec3 elastic_force:real moment:vec3 elastic_work:real spring_work:real "
               "is_slipping:uint8 is_turning:uint8 sides:side*2",
           near="pose:start moving:moving",
           far="pose:start moving:moving"), 589),
     ("scree_gather", "particle", "src/forces/gather_kernel.h",
-     dict(own="row_begin:int64 own_begin:int32 mass:real force:vec3 torque:vec3", far="first_of_pair:int64"), 59),
+     dict(own="row_begin:int64 own_begin:int32 mass:real force:vec3 torque:vec3", far="first_of_pair:int32"), 59),
     # a row holds all candidates, touching or not; where a particle is the first body its contacts stand next to each other
-    ("scree_gather, per candidate", "pair", "src/forces/gather_kernel.h", dict(own="row_pairs:int32", far="first_of_pair:int64"), 10),
+    ("scree_gather, per candidate", "pair", "src/forces/gather_kernel.h", dict(own="row_pairs:int32", far="first_of_pair:int32"), 10),
     ("scree_gather, per contact", "contact", "src/forces/gather_kernel.h", dict(own="sides:side", far="sides:side"), 84),
     ("scree_correct", "particle", "src/dynamics/integrator_kernel.h",
      dict(own="mass:real force:vec3 torque:vec3 velocity:vec3*2 angular_momentum:vec3*2 inertia:vec3 orientation:quat moving:real*6"),
@@ -71,8 +71,8 @@ KERNELS = [
 SPHERE_KERNELS = [
     ("scree_place_spheres", "particle", "src/contact/sphere_pairs_kernel.h", dict(own="shape:int32 pose:pose spheres:sphere"), None),
     ("scree_sphere_sphere_count", "pair", "src/contact/sphere_pairs_kernel.h",
-     dict(own="batch:int32 pairs:pair first_of_pair:int64", near="spheres:sphere", far="spheres:sphere"), None),
-    ("scree_sphere_sphere_write", "pair", "src/contact/sphere_pairs_kernel.h", dict(own="batch:int32 first_of_pair:int64"), None),
+     dict(own="batch:int32 pairs:pair first_of_pair:int32", near="spheres:sphere", far="spheres:sphere"), None),
+    ("scree_sphere_sphere_write", "pair", "src/contact/sphere_pairs_kernel.h", dict(own="batch:int32 first_of_pair:int32"), None),
     ("scree_sphere_sphere_write, per contact", "contact", "src/contact/sphere_pairs_kernel.h",
      dict(own="pairs:pair bodies:pair patch:int32 volume:real indentation:real normal:vec3 arm:vec3", near="spheres:sphere", far="spheres:sphere"),
      None),
@@ -114,9 +114,9 @@ SEARCH_KERNELS = [
     ("copies of poses", "particle", None, dict(own="pose:pose*4 travel:real"), None),
     # once for each of four kinds of pairs
     ("scree_pair_flag", "pair", "src/contact/pair_kinds_kernel.h",
-     dict(own="pairs:pair*4 places:int64*4", near="shape:int32*4", far="shape:int32*4"), 99),
-    ("scan of kinds", "pair", None, dict(own="places:int64*12"), 40),
-    ("scree_pair_scatter", "pair", "src/contact/pair_kinds_kernel.h", dict(own="places:int64 batch:int32"), 11),
+     dict(own="pairs:pair*4 places:int32*4", near="shape:int32*4", far="shape:int32*4"), 99),
+    ("scan of kinds", "pair", None, dict(own="places:int32*12"), 40),
+    ("scree_pair_scatter", "pair", "src/contact/pair_kinds_kernel.h", dict(own="places:int32 batch:int32"), 11),
     ("scree_group_bounds", "pair", "src/contact/pair_groups_kernel.h",
      dict(own="first:int32", near="begin:int32*2 end:int32*2"), None),
     # sorted as before, so the old place is next to that of the pair before; end: and the beginning of the group

@@ -24,7 +24,7 @@ typedef struct scree_contact_list
     bool acts_in_points;    ///< all bodies are spheres and no law has moments: no use for arrays with *
     bool has_no_levers;     ///< no law asks for the shape of the overlap: no use for arrays with **
     bool has_no_rolling;    ///< no law has rolling resistance: no use for rolling_moment
-    int64_t *first_of_pair; ///< (num_pairs + 1) contacts of candidate pair p are first_of_pair[p] .. [p + 1] - 1
+    int32_t *first_of_pair; ///< (num_pairs + 1) contacts of candidate pair p are first_of_pair[p] .. [p + 1] - 1
 
     // geometry, from the narrow phase
     scree_candidate_pair *bodies; ///< +

@@ -18,9 +18,10 @@ enum
 /// Do pairs begin .. end - 1 have one contact or none, and the same ones in both lists?
 SCREE_LANES_FUNCTION static bool is_unchanged(const scree_history_match_args *a, int64_t begin, int64_t end)
 {
-    const int64_t *first = a->first_of_pair + begin, *old_first = a->old_first_of_pair + begin;
-    const int64_t num = end - begin, shift = first[0] - old_first[0];
-    int64_t wrong[SCREE_LANES] = {0};
+    const int32_t *first = a->first_of_pair + begin, *old_first = a->old_first_of_pair + begin;
+    const int64_t num = end - begin;
+    const int32_t shift = first[0] - old_first[0];
+    int32_t wrong[SCREE_LANES] = {0};
     int64_t p = 0;
     for (; p + SCREE_LANES <= num; p += SCREE_LANES)
         for (int l = 0; l < SCREE_LANES; ++l)
@@ -53,7 +54,7 @@ static void match_block(const scree_history_match_args *a, int64_t begin, int64_
     {
         const int64_t first = a->first_of_pair[begin], num = a->first_of_pair[end] - first;
         const int64_t old = a->old_first_of_pair[begin];
-        for (int64_t c = 0; c < num; ++c) a->old_of_contact[first + c] = old + c;
+        for (int64_t c = 0; c < num; ++c) a->old_of_contact[first + c] = (int32_t)(old + c);
         memset(a->is_continued + old, 1, (size_t)num);
         return;
     }

@@ -11,14 +11,14 @@
 typedef struct scree_history_match_args
 {
     const scree_candidate_pair *pairs; ///< (num_pairs) present candidate pairs
-    const int64_t *first_of_pair;      ///< (num_pairs + 1) present contacts of each
-    const int64_t *old_first_of_pair;  ///< (num_pairs + 1) old contacts of each, or NULL if the pairs have changed
+    const int32_t *first_of_pair;      ///< (num_pairs + 1) present contacts of each
+    const int32_t *old_first_of_pair;  ///< (num_pairs + 1) old contacts of each, or NULL if the pairs have changed
     scree_pair_groups old_groups;      ///< of the old contacts; only then
     const int32_t *patch;              ///< (num_contacts)
     const int32_t *old_patch;          ///< (num_old)
     const scree_vec3 *arm;             ///< (num_contacts)
     const scree_vec3 *old_arm;         ///< (num_old)
-    int64_t *old_of_contact;           ///< (num_contacts) out: old contact or -1
+    int32_t *old_of_contact;           ///< (num_contacts) out: old contact or -1
     uint8_t *is_continued;             ///< (num_old) out: 1 where an old contact goes on; zeroed before
 } scree_history_match_args;
 
@@ -37,20 +37,20 @@ SCREE_FN bool scree_history_same_part(int32_t patch, int32_t old_patch)
 
 /// All contacts of candidate pair p, with old ones old_begin .. old_end - 1. Several patches of one part take their
 /// nearest old patch that is still free, in ascending order of patch.
-SCREE_FN void scree_history_match_pair(scree_history_match_args a, int64_t p, int64_t old_begin, int64_t old_end)
+SCREE_FN void scree_history_match_pair(scree_history_match_args a, int64_t p, int32_t old_begin, int32_t old_end)
 {
-    const int64_t begin = a.first_of_pair[p], end = a.first_of_pair[p + 1];
+    const int32_t begin = a.first_of_pair[p], end = a.first_of_pair[p + 1];
     if (end - begin == 1 && old_end - old_begin == 1 && scree_history_same_part(a.patch[begin], a.old_patch[old_begin]))
     {
         a.old_of_contact[begin] = old_begin;
         a.is_continued[old_begin] = 1;
         return;
     }
-    for (int64_t c = begin; c < end; ++c)
+    for (int32_t c = begin; c < end; ++c)
     {
-        int64_t best = -1;
+        int32_t best = -1;
         scree_real best_distance = SCREE_REAL_MAX;
-        for (int64_t o = old_begin; o < old_end; ++o)
+        for (int32_t o = old_begin; o < old_end; ++o)
         {
             if (!scree_history_same_part(a.patch[c], a.old_patch[o])) continue;
             const scree_real distance = scree_history_distance(a.arm[c], a.old_arm[o]);
@@ -71,8 +71,8 @@ SCREE_FN void scree_history_match_at(scree_history_match_args a, int64_t p)
     if (a.first_of_pair[p] == a.first_of_pair[p + 1]) return;
     const scree_candidate_pair pair = a.pairs[p];
     const bool has_same_pairs = a.old_first_of_pair;
-    const int64_t begin = has_same_pairs ? a.old_first_of_pair[p] : scree_group_find(&a.old_groups, pair.i, pair.j);
-    const int64_t end =
+    const int32_t begin = has_same_pairs ? a.old_first_of_pair[p] : scree_group_find(&a.old_groups, pair.i, pair.j);
+    const int32_t end =
         has_same_pairs ? a.old_first_of_pair[p + 1] : scree_group_find(&a.old_groups, pair.i, pair.j + 1);
     scree_history_match_pair(a, p, begin, end);
 }

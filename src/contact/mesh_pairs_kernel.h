@@ -136,7 +136,7 @@ SCREE_FN bool scree_is_pair_lost(const scree_mesh_pairs_args *a, int32_t m, cons
 SCREE_FN void scree_mesh_pair_note(const scree_mesh_pairs_args *a, int32_t m, const scree_overlap_result *results,
                                    int32_t num)
 {
-    int64_t num_contacts = 0;
+    int32_t num_contacts = 0;
     for (int32_t r = 0; r < num; ++r)
     {
         if (results[r].status == SCREE_OVERLAP_NO_NORMAL && scree_is_pair_lost(a, m, results + r))

@@ -310,8 +310,9 @@ static scree_status sort_pairs(const search *s)
         scree_pair_kinds_args args = {s->bodies, s->pairs, s->list->first_of_pair, NULL, (scree_pair_kind)k};
         scree_pair_flag_launch_on(device, args, s->num_pairs);
         scree_scan_on(&b->scan, args.places, s->num_pairs);
-        batch->num = 0;
-        scree_device_read(device, &batch->num, args.places + s->num_pairs, sizeof batch->num);
+        int32_t num = 0;
+        scree_device_read(device, &num, args.places + s->num_pairs, sizeof num);
+        batch->num = num;
         if (batch->num == 0) continue;
         status = scree_device_reserve(device, &batch->pairs, &batch->max, batch->num, sizeof *batch->pairs);
         if (status != SCREE_OK) return status;
@@ -412,7 +413,7 @@ static void count_contacts(const search *s)
     scree_device_branch(device, 0);
     find_overlaps(s);
     scree_device_join(device);
-    int64_t *first_of_pair = s->list->first_of_pair;
+    int32_t *first_of_pair = s->list->first_of_pair;
     scree_scan_on(&b->scan, first_of_pair, s->num_pairs);
     scree_device_copy(device, &b->tally->num_contacts, first_of_pair + s->num_pairs, sizeof *first_of_pair);
 }
@@ -504,7 +505,7 @@ scree_status scree_narrow_phase_find(scree_narrow_phase *narrow_phase, const scr
         // a pair that had no room asks for a second, roomier search
         if (lacks_room) status = make_room(&s, &tally);
     }
-    if (status == SCREE_OK && tally.num_contacts > INT32_MAX) status = SCREE_TOO_MANY;
+    if (status == SCREE_OK && tally.num_contacts < 0) status = SCREE_TOO_MANY;
     if (status == SCREE_OK && are_new) status = scree_contact_list_reserve(list, tally.num_contacts, num_pairs);
     narrow_phase->lacks_room = lacks_room || tally.num_contacts > scree_contact_list_room(list);
     if (status != SCREE_OK || narrow_phase->lacks_room) return status;

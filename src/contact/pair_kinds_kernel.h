@@ -27,7 +27,7 @@ typedef struct scree_pair_kinds_args
 {
     scree_bodies bodies;
     const scree_candidate_pair *pairs; ///< (num_pairs)
-    int64_t *places;                   ///< (num_pairs + 1) first 1 for each pair of the kind, then the sums before
+    int32_t *places;                   ///< (num_pairs + 1) first 1 for each pair of the kind, then the sums before
     int32_t *batch;                    ///< (num of the kind) out: the pairs of the kind, in order
     scree_pair_kind kind;
 } scree_pair_kinds_args;

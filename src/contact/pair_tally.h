@@ -17,7 +17,8 @@ typedef struct scree_pair_tally
     int64_t num_kept;                              ///< overlaps that touch, with or without room to keep them
     scree_maximum most_results;                    ///< of one pair of meshes, if there was no room for them
     scree_maximum most_found;                      ///< on one mesh by a sphere, if there was no room for them
-    int64_t num_contacts;                          ///< of all pairs
+    int32_t num_contacts;                          ///< of all pairs; negative: above INT32_MAX
+    int32_t unused;                                ///< so that there is no gap
     int64_t num_without_normal;
     int64_t num_fallbacks;
     int64_t num_inside; ///< centres of spheres inside the solid of a mesh

@@ -27,7 +27,8 @@ SCREE_FN bool scree_lacks_room(const scree_pair_tally *tally, int64_t max_kept)
 SCREE_FN void scree_room_at(scree_room_args a, int64_t i)
 {
     (void)i;
-    if (scree_lacks_room(a.tally, a.max_kept) || a.tally->num_contacts > a.max_contacts) a.live->halt = SCREE_HALT_ROOM;
+    if (scree_lacks_room(a.tally, a.max_kept) || a.tally->num_contacts < 0 || a.tally->num_contacts > a.max_contacts)
+        a.live->halt = SCREE_HALT_ROOM;
     else a.live->num_contacts = a.tally->num_contacts;
 }
 

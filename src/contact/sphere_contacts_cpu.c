@@ -32,7 +32,7 @@ SCREE_LANES_FUNCTION static void count_group(const scree_sphere_pairs_args *a, c
 {
     scree_sphere_group g;
     load_group(&g, a, p);
-    int64_t num[SCREE_LANES];
+    int32_t num[SCREE_LANES];
     for (int l = 0; l < SCREE_LANES; ++l)
     {
         const scree_vec3 between = scree_vec3_sub(scree_lanes_get(&g.centre_i, l), scree_lanes_get(&g.centre_j, l));

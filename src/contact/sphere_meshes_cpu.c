@@ -99,8 +99,8 @@ static bool is_local_minimum(const gathered_spheres *gathered, const gathered_sp
 /// Contacts of a gathered sphere, added to those of its pair.
 static void add_contacts(const scree_sphere_pairs_args *a, gathered_spheres *gathered, const gathered_sphere *sphere)
 {
-    int64_t *num = a->list.first_of_pair + a->batch[sphere->b];
-    const int32_t first = *num < a->max_found ? (int32_t)*num : a->max_found;
+    int32_t *num = a->list.first_of_pair + a->batch[sphere->b];
+    const int32_t first = *num < a->max_found ? *num : a->max_found;
     scree_sphere_contact *found = a->found + sphere->b * a->max_found + first;
     const scree_real radius = sphere->on_mesh.radius;
     scree_mesh_search search = scree_mesh_search_start(sphere->on_mesh, found, a->max_found - first);

@@ -186,14 +186,14 @@ SCREE_FN void scree_sphere_mesh_count_at(scree_sphere_mesh_count_args a, int64_t
     const bool is_first = a.shapes[a.shape[pair.i]].kind != SCREE_KIND_MESH; // is the sphere or clump
     const int32_t body = is_first ? pair.i : pair.j, mesh = is_first ? pair.j : pair.i;
     // sums are kept in memory, for the search on the mesh needs all registers
-    int64_t *num = a.list.first_of_pair + a.batch[b];
+    int32_t *num = a.list.first_of_pair + a.batch[b];
     bool is_any_inside = false;
     *num = 0;
     if (a.near[b].num == 0) return;
     for (int32_t k = 0; k < a.shapes[a.shape[body]].num_spheres; ++k)
     {
         const scree_sphere sphere = scree_turned_sphere(a.shapes + a.shape[body], a.pose + body, k);
-        const int32_t first = *num < a.max_found ? (int32_t)*num : a.max_found;
+        const int32_t first = *num < a.max_found ? *num : a.max_found;
         scree_sphere_contact *found = a.found + b * a.max_found + first;
         bool is_inside;
         const scree_sphere_on_mesh on_mesh =
@@ -211,8 +211,8 @@ SCREE_FN void scree_sphere_mesh_count_at(scree_sphere_mesh_count_args a, int64_t
 SCREE_FN void scree_sphere_mesh_write_at(scree_sphere_mesh_write_args a, int64_t b)
 {
     const int32_t p = a.batch[b];
-    const int64_t begin = a.list.first_of_pair[p];
-    const int32_t num = (int32_t)(a.list.first_of_pair[p + 1] - begin);
+    const int32_t begin = a.list.first_of_pair[p];
+    const int32_t num = a.list.first_of_pair[p + 1] - begin;
     if (num == 0) return;
     const scree_candidate_pair pair = a.pairs[p];
     const bool is_first = a.shapes[a.shape[pair.i]].kind != SCREE_KIND_MESH;

@@ -14,7 +14,7 @@ enum
 
 /// Of entries begin .. end - 1 of `batch`, or of the pairs themselves if it is NULL, those with contacts; returns how
 /// many. `touching` has room for one more than there are entries.
-static inline int32_t scree_pick_touching(const int64_t *first_of_pair, const int32_t *batch, int64_t begin,
+static inline int32_t scree_pick_touching(const int32_t *first_of_pair, const int32_t *batch, int64_t begin,
                                           int64_t end, int32_t *touching)
 {
     int32_t num = 0;

@@ -53,7 +53,7 @@ extern "C"
     /// Scratch memory [bytes] that the scan of num_values takes.
     int64_t scree_cuda_scan_scratch(scree_device *device, int64_t num_values);
     /// Exclusive sums of values (num_values) in place, with scratch memory of num_bytes.
-    void scree_cuda_scan(scree_device *device, int64_t *values, int64_t num_values, void *scratch, int64_t num_bytes);
+    void scree_cuda_scan(scree_device *device, int32_t *values, int64_t num_values, void *scratch, int64_t num_bytes);
 
 #ifdef __cplusplus
 }

@@ -31,18 +31,18 @@ static int64_t first_of_chunk(int64_t num_values, int num_chunks, int c)
 }
 
 /// Exclusive sums of values[begin .. end), starting from `sum`; returns the sum after the last one.
-static int64_t scan_chunk(int64_t *values, int64_t begin, int64_t end, int64_t sum)
+static int64_t scan_chunk(int32_t *values, int64_t begin, int64_t end, int64_t sum)
 {
     for (int64_t i = begin; i < end; ++i)
     {
-        const int64_t value = values[i];
-        values[i] = sum;
+        const int32_t value = values[i];
+        values[i] = (int32_t)sum;
         sum += value;
     }
     return sum;
 }
 
-int64_t scree_scan_exclusive(int64_t *values, int64_t num_values)
+int64_t scree_scan_exclusive(int32_t *values, int64_t num_values)
 {
     const int num_chunks = count_chunks(num_values);
     int64_t sums[MAX_CHUNKS];
@@ -57,11 +57,15 @@ int64_t scree_scan_exclusive(int64_t *values, int64_t num_values)
             for (int64_t i = first_of_chunk(num_values, num_chunks, c); i < end; ++i) sum += values[i];
             sums[c] = sum;
         }
-        scan_chunk(sums, 0, num_chunks, 0);
     }
-    else sums[0] = 0;
 
     int64_t total = 0;
+    for (int c = 0; c < num_chunks; ++c)
+    {
+        const int64_t sum = num_chunks > 1 ? sums[c] : 0;
+        sums[c] = total;
+        total += sum;
+    }
 #pragma omp parallel for schedule(static, 1) num_threads(num_chunks)
     for (int c = 0; c < num_chunks; ++c)
     {
@@ -69,7 +73,7 @@ int64_t scree_scan_exclusive(int64_t *values, int64_t num_values)
                                        first_of_chunk(num_values, num_chunks, c + 1), sums[c]);
         if (c == num_chunks - 1) total = sum;
     }
-    values[num_values] = total;
+    values[num_values] = total > INT32_MAX ? -1 : (int32_t)total;
     return total;
 }
 
@@ -85,7 +89,7 @@ scree_status scree_scan_reserve(scree_scan_scratch *scratch, int64_t num_values)
     return SCREE_OK;
 }
 
-void scree_scan_on(scree_scan_scratch *scratch, int64_t *values, int64_t num_values)
+void scree_scan_on(scree_scan_scratch *scratch, int32_t *values, int64_t num_values)
 {
     if (scratch->device == NULL)
     {

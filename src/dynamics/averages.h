@@ -72,7 +72,7 @@ typedef struct scree_averages
     // scratch
     scree_collisions old_collisions;
     scree_scan_scratch scan;
-    int64_t *ended_places; ///< (max_places)
+    int32_t *ended_places; ///< (max_places)
     int64_t max_places;
     scree_ended_collision *ended; ///< (max_ended)
     int64_t max_ended;

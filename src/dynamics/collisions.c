@@ -164,7 +164,7 @@ static void count_ended(scree_simulation *simulation, scree_simulation *there)
     args.ended = NULL;
     scree_ended_flag_launch_on(device, args, num_old);
     scree_scan_on(&scratch->scan, args.places, num_old);
-    int64_t num = 0;
+    int32_t num = 0;
     scree_device_read(device, &num, args.places + num_old, sizeof num);
     if (num == 0) return;
     args.ended = scratch->ended;

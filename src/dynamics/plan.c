@@ -25,11 +25,11 @@ scree_plan_bytes scree_simulation_plan_bytes(const scree_simulation *simulation)
     bytes.search = body + sizeof(scree_box) + sizeof(scree_vec3) + sizeof(scree_real) + tree + rows;
     // ids, rows, keys to sort, batch, first contact now and in the step before
     bytes.pair = sizeof(scree_candidate_pair) + 2 * sizeof(int32_t) + 2 * sizeof(uint64_t) + sizeof(int32_t) +
-                 2 * sizeof(int64_t);
+                 2 * sizeof(int32_t);
     if (has_meshes) bytes.mesh_pair = 2 * sizeof(scree_pair_memory) + 2 * sizeof(int32_t);
     if ((has_spheres || has[SCREE_KIND_CLUMP]) && (has_meshes || s->num_walls > 0))
         bytes.sphere_mesh_pair = sizeof(scree_near_nodes) + 3 * sizeof(scree_sphere_contact);
-    bytes.contact = (size_t)scree_contact_list_bytes(&s->contacts) + sizeof(int64_t) + 1;
+    bytes.contact = (size_t)scree_contact_list_bytes(&s->contacts) + sizeof(int32_t) + 1;
     if (has_meshes)
         bytes.contact += sizeof(scree_kept_overlap) + (s->contacts.has_no_levers ? 0 : sizeof(scree_kept_lever));
     for (int32_t k = 0; k < 2 * s->num_shapes; ++k) bytes.shapes += scree_shape_view_bytes(s->shape_views + k);

@@ -52,7 +52,7 @@ typedef struct scree_step_buffers
     // contacts
     bool is_old_list_of_same_pairs; ///< old contacts can be found by the index of their candidate pair
     int32_t *old_groups;            ///< (2, num_bodies) if not: where those of each first body begin and end
-    int64_t *old_of_contact;
+    int32_t *old_of_contact;
     int64_t max_contacts;
     uint8_t *is_continued;
     int64_t max_old;

@@ -10,7 +10,7 @@ typedef struct scree_collision_args
 {
     scree_contact_list contacts;
     scree_body_motion bodies;      ///< with the velocities of the end of the step
-    const int64_t *old_of_contact; ///< (num_contacts) or -1
+    const int32_t *old_of_contact; ///< (num_contacts) or -1
     const double *old_normal;      ///< [J] (num_old)
     const double *old_tangential;  ///< [J] (num_old)
     double time_step;              ///< [s]
@@ -28,7 +28,7 @@ SCREE_FN void scree_collision_at(scree_collision_args a, int64_t c)
     const scree_vec3 moment = a.contacts.acts_in_points ? scree_vec3_zero() : a.contacts.moment[c];
     const double normal = (double)scree_vec3_dot(a.contacts.normal_force[c], v);
     const double tangential = (double)(scree_vec3_dot(a.contacts.tangential_force[c], v) + scree_vec3_dot(moment, w));
-    const int64_t old = a.old_of_contact[c];
+    const int32_t old = a.old_of_contact[c];
     a.normal[c] = (old >= 0 ? a.old_normal[old] : 0) - normal * a.time_step;
     a.tangential[c] = (old >= 0 ? a.old_tangential[old] : 0) - tangential * a.time_step;
 }
@@ -47,7 +47,7 @@ typedef struct scree_ended_collisions_args
     const double *normal;               ///< [J] (num_old)
     const double *tangential;           ///< [J] (num_old)
     int32_t num_particles;
-    int64_t *places;              ///< (num_old + 1) first 1 for each that has ended, then the sums before
+    int32_t *places;              ///< (num_old + 1) first 1 for each that has ended, then the sums before
     scree_ended_collision *ended; ///< out: those that have ended, in order
 } scree_ended_collisions_args;
 

@@ -23,10 +23,10 @@ typedef struct scree_force_group
 } scree_force_group;
 
 static void load_history(scree_force_group *restrict g, const scree_contact_list *restrict old_list,
-                         const int64_t *restrict old_of_contact)
+                         const int32_t *restrict old_of_contact)
 {
     // contacts mostly last, and then follow each other in both lists
-    const int64_t first = old_of_contact[0];
+    const int32_t first = old_of_contact[0];
     bool is_run = first >= 0;
     for (int l = 1; l < SCREE_LANES; ++l) is_run &= old_of_contact[l] == first + l;
     if (is_run)
@@ -39,7 +39,7 @@ static void load_history(scree_force_group *restrict g, const scree_contact_list
     }
     for (int l = 0; l < SCREE_LANES; ++l)
     {
-        const int64_t old = old_of_contact[l];
+        const int32_t old = old_of_contact[l];
         const bool is_old = old >= 0;
         scree_lanes_set(&g->spring_force, l, is_old ? old_list->spring_force[old] : scree_vec3_zero());
         g->tangential_stiffness[l] = is_old ? old_list->tangential_stiffness[old] : 0;

@@ -53,7 +53,7 @@ typedef struct scree_contact_force_args
 {
     scree_contact_list contacts;     ///< present: geometry read, forces and history written
     scree_contact_list old_contacts; ///< of the step before: history read
-    const int64_t *old_of_contact;   ///< (num_contacts) or -1
+    const int32_t *old_of_contact;   ///< (num_contacts) or -1
     scree_body_motion bodies;
     const scree_force_law *laws; ///< (num_materials, num_materials)
     int32_t num_materials;
@@ -131,7 +131,7 @@ SCREE_FN void scree_contact_force_at(scree_contact_force_args a, int64_t c)
     k.rolling_moment = scree_vec3_zero();
     k.tangential_stiffness = 0;
     scree_real elastic_energy = 0, spring_energy = 0;
-    const int64_t old = a.old_of_contact[c];
+    const int32_t old = a.old_of_contact[c];
     if (old >= 0)
     {
         k.spring_force = a.old_contacts.spring_force[old];

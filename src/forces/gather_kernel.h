@@ -49,15 +49,15 @@ SCREE_FN void scree_gather_side(const scree_contact_side *side, scree_vec3 *forc
 /// second body. Where it is the first one, pairs and contacts stand next to each other: no row is needed.
 SCREE_FN void scree_gather_sides(const scree_gather_args *a, int64_t i, scree_vec3 *force, scree_vec3 *torque)
 {
-    const int64_t *first_of_pair = a->contacts.first_of_pair;
+    const int32_t *first_of_pair = a->contacts.first_of_pair;
     const int32_t own_begin = a->own_begin[i], own_end = a->own_begin[i + 1];
     for (int64_t k = a->row_begin[i]; k < a->row_begin[i + 1] - (own_end - own_begin); ++k)
     {
         const int32_t p = a->row_pairs[k];
-        for (int64_t c = first_of_pair[p]; c < first_of_pair[p + 1]; ++c)
+        for (int32_t c = first_of_pair[p]; c < first_of_pair[p + 1]; ++c)
             scree_gather_side(a->sides + a->max_sides + c, force, torque);
     }
-    for (int64_t c = first_of_pair[own_begin]; c < first_of_pair[own_end]; ++c)
+    for (int32_t c = first_of_pair[own_begin]; c < first_of_pair[own_end]; ++c)
         scree_gather_side(a->sides + c, force, torque);
 }
 

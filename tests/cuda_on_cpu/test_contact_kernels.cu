@@ -61,7 +61,7 @@ static scree_overlap_slice slice_on(side &where, const scree_overlap_slice &slic
 }
 
 /// Room for the geometry of n contacts.
-static scree_contact_list empty_list(side &where, const std::vector<int64_t> &first, int64_t n)
+static scree_contact_list empty_list(side &where, const std::vector<int32_t> &first, int64_t n)
 {
     scree_contact_list list = {};
     list.first_of_pair = where.copy(first.data(), (int64_t)first.size());
@@ -148,10 +148,10 @@ static void find_overlaps_on(side &where, bool separates)
     kinds.bodies = args.bodies;
     kinds.pairs = args.pairs;
     kinds.kind = SCREE_PAIR_MESH_MESH;
-    kinds.places = where.make<int64_t>(num_pairs + 1);
+    kinds.places = where.make<int32_t>(num_pairs + 1);
     kinds.batch = where.make<int32_t>(num_pairs);
     LAUNCH_ON(where, scree_pair_flag, kinds, num_pairs);
-    std::vector<int64_t> places(1, 0);
+    std::vector<int32_t> places(1, 0);
     for (const int64_t flag : where.read(kinds.places, num_pairs)) places.push_back(places.back() + flag);
     kinds.places = where.copy(places.data(), num_pairs + 1);
     LAUNCH_ON(where, scree_pair_scatter, kinds, num_pairs);
@@ -168,7 +168,7 @@ static void find_overlaps_on(side &where, bool separates)
     args.kept = where.make<scree_kept_overlap>(num);
     args.kept_levers = where.make<scree_kept_lever>(num);
     args.first_kept = where.make<int32_t>(num);
-    args.list.first_of_pair = where.zeros<int64_t>(num_pairs + 1);
+    args.list.first_of_pair = where.zeros<int32_t>(num_pairs + 1);
     args.tally = where.zeros<scree_pair_tally>(1);
     args.use = s->narrow_phase.separation;
     LAUNCH_ON(where, scree_mesh_apart, args, num);
@@ -201,8 +201,8 @@ static void find_overlaps_on(side &where, bool separates)
     SCREE_CHECK(num_active > 20 && num_active < num && tally.num_lacking[SCREE_LACK_PIECES] == 0);
     SCREE_CHECK(tally.num_active[0] > 0);
 
-    std::vector<int64_t> first(1, 0);
-    for (const int64_t num_contacts : where.read(args.list.first_of_pair, num_pairs))
+    std::vector<int32_t> first(1, 0);
+    for (const int32_t num_contacts : where.read(args.list.first_of_pair, num_pairs))
         first.push_back(first.back() + num_contacts);
     const int64_t n = first.back();
     SCREE_CHECK(n > 20);
@@ -239,7 +239,7 @@ static void find_spheres_on(side &where, scree_pair_kind kind)
     args.spheres = spheres;
     args.pairs = where.copy(s->broad_phase.pairs, num_pairs);
     args.batch = where.copy(batch.data(), num);
-    args.list.first_of_pair = where.zeros<int64_t>(num_pairs + 1);
+    args.list.first_of_pair = where.zeros<int32_t>(num_pairs + 1);
     args.near = where.zeros<scree_near_nodes>(num);
     args.reach = 2 * b->skin;
     args.max_found = 8;
@@ -256,8 +256,8 @@ static void find_spheres_on(side &where, scree_pair_kind kind)
     where.keep(args.tally, 1);
     where.keep(args.near, num);
 
-    std::vector<int64_t> first(1, 0);
-    for (const int64_t num_contacts : where.read(args.list.first_of_pair, num_pairs))
+    std::vector<int32_t> first(1, 0);
+    for (const int32_t num_contacts : where.read(args.list.first_of_pair, num_pairs))
         first.push_back(first.back() + num_contacts);
     const int64_t n = first.back();
     SCREE_CHECK(n > 10);
@@ -289,7 +289,7 @@ static void match_history_on(side &where, bool has_same_pairs)
     args.old_patch = old.patch;
     args.arm = contacts.arm;
     args.old_arm = old.arm;
-    args.old_of_contact = where.make<int64_t>(num_contacts);
+    args.old_of_contact = where.make<int32_t>(num_contacts);
     args.is_continued = where.zeros<uint8_t>(old.num_contacts);
     LAUNCH_ON(where, scree_history_match, args, num_pairs);
     where.keep(args.old_of_contact, num_contacts);
@@ -493,7 +493,7 @@ static void test_collisions()
 
             // every fifth has ended
             std::vector<uint8_t> is_continued;
-            std::vector<int64_t> places(1, 0);
+            std::vector<int32_t> places(1, 0);
             for (int64_t o = 0; o < num_old; ++o) is_continued.push_back(o % 5 != 0);
             for (int64_t o = 0; o < num_old; ++o) places.push_back(places.back() + (o % 5 == 0));
             scree_ended_collisions_args ended = {};
@@ -502,7 +502,7 @@ static void test_collisions()
             ended.normal = args.old_normal;
             ended.tangential = args.old_tangential;
             ended.num_particles = (int32_t)num_particles;
-            ended.places = where.make<int64_t>(num_old + 1);
+            ended.places = where.make<int32_t>(num_old + 1);
             LAUNCH_ON(where, scree_ended_flag, ended, num_old);
             where.keep(ended.places, num_old);
             ended.places = where.copy(places.data(), num_old + 1);

@@ -16,9 +16,9 @@ static void fill(scree_contact_list *list, const scree_candidate_pair *bodies, i
         list->indentation[c] = 1;
         list->normal[c] = scree_vec3_make(0, 0, 1);
         list->arm[c] = scree_vec3_make(0, 0, 0);
-        list->first_of_pair[c] = c;
+        list->first_of_pair[c] = (int32_t)c;
     }
-    list->first_of_pair[num] = num;
+    list->first_of_pair[num] = (int32_t)num;
 }
 
 static void test_growth_keeps_contents(void)
@@ -94,7 +94,7 @@ static void test_validate_finds_faults(void)
 /// changed.
 static scree_history_match_args match_of(const scree_contact_list *now, const scree_contact_list *old,
                                          const scree_candidate_pair *pairs, int32_t *bounds, int64_t num_bodies,
-                                         int64_t *old_of_contact, uint8_t *is_continued)
+                                         int32_t *old_of_contact, uint8_t *is_continued)
 {
     scree_history_match_args args = {pairs,       now->first_of_pair, bounds == NULL ? old->first_of_pair : NULL,
                                      {0},         now->patch,         old->patch,
@@ -129,7 +129,7 @@ static void test_history_follows_pairs(void)
                     if (scree_test_random(&seed) < 0.3) bodies[num++] = (scree_candidate_pair){i, j};
             fill(&lists[k], bodies, num);
         }
-        int64_t old_of_contact[MAX];
+        int32_t old_of_contact[MAX];
         uint8_t is_continued[MAX] = {0};
         int32_t bounds[2 * BODIES] = {0};
         const scree_history_match_args args =
@@ -165,7 +165,7 @@ static void test_patches_find_the_nearest(void)
     old.arm[1].x = -1;
     now.arm[0].x = -1.01;
     now.arm[1].x = 1.02;
-    int64_t old_of_contact[2];
+    int32_t old_of_contact[2];
     uint8_t is_continued[2] = {0, 0};
     const scree_history_match_args args = match_of(&now, &old, bodies, NULL, 0, old_of_contact, is_continued);
     scree_history_match_launch(args, 1);

@@ -81,7 +81,7 @@ static void place_bodies(void)
 
 typedef struct found_contacts
 {
-    int64_t num[NUM_PAIRS + 1];
+    int32_t num[NUM_PAIRS + 1];
     scree_sphere_contact found[NUM_PAIRS * MAX_FOUND];
     scree_pair_tally tally;
 } found_contacts;
@@ -118,7 +118,7 @@ static void check_reach(double reach)
     int num_different = 0, num_touching = 0, num_listed[2] = {0, 0};
     for (int64_t p = 0; p < NUM_PAIRS; ++p)
     {
-        const int64_t num = one_by_one.num[p];
+        const int32_t num = one_by_one.num[p];
         num_touching += num > 0;
         if (near_nodes[p].num > 0)
             ++num_listed[shapes[shape[pairs[p].j]].tree.nodes[near_nodes[p].node[0]].first_child < 0];

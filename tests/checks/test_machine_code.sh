@@ -65,6 +65,7 @@ forces/contact_force_cpu 230
 forces/work_cpu 50
 forces/gather_cpu 25
 contact/sphere_contacts_cpu 27
+contact/sphere_meshes_cpu 62
 dynamics/integrator_cpu 80
 FLOORS
 fi

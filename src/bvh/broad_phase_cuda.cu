@@ -1,6 +1,8 @@
 #include "bvh/broad_phase_kernel.h"
 #include "core/launch_cuda.cuh"
 
+static_assert(SCREE_PAIR_STRIDE == SCREE_CUDA_BLOCK, "a place in shared memory for every thread");
+
 SCREE_DEFINE_LAUNCH(scree_particle_pairs)
 SCREE_DEFINE_LAUNCH(scree_wall_pairs)
 SCREE_DEFINE_LAUNCH(scree_pair_unpack)

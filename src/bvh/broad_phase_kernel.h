@@ -8,8 +8,20 @@
 #include "bvh/broad_phase.h"
 #include "core/atomic_kernel.h"
 
-/// Keys that a call collects before it takes a place in the list for all of them.
+/// Keys that a call collects before it takes a place in the list for all of them: a local array, on a GPU shared memory
+/// of its own, because a local array lies in the memory of the device there. A block has SCREE_PAIR_STRIDE threads at
+/// most.
+#ifdef __CUDA_ARCH__
+#define SCREE_PAIR_BATCH 16
+#define SCREE_PAIR_STRIDE 128
+#define SCREE_PAIR_KEYS(keys)                                                  \
+    __shared__ uint64_t keys##_of_block[SCREE_PAIR_BATCH * SCREE_PAIR_STRIDE]; \
+    uint64_t *const keys = keys##_of_block + threadIdx.x
+#else
 #define SCREE_PAIR_BATCH 32
+#define SCREE_PAIR_STRIDE 1
+#define SCREE_PAIR_KEYS(keys) uint64_t keys[SCREE_PAIR_BATCH]
+#endif
 
 /// Where found pairs go. Key of (i, j), i < j: i << id_bits | j.
 typedef struct scree_pair_list
@@ -23,7 +35,7 @@ typedef struct scree_pair_list
 /// Keys on their way to the list.
 typedef struct scree_pair_batch
 {
-    uint64_t keys[SCREE_PAIR_BATCH];
+    uint64_t *keys; ///< (SCREE_PAIR_BATCH), SCREE_PAIR_STRIDE from one to the next
     int32_t num_keys;
 } scree_pair_batch;
 
@@ -40,14 +52,22 @@ SCREE_FN void scree_pair_list_append(scree_pair_list list, const uint64_t *keys,
     for (int32_t k = 0; k < num_keys && begin + k < list.max_keys; ++k) list.keys[begin + k] = keys[k];
 }
 
+SCREE_FN void scree_pair_batch_append(const scree_pair_batch *batch, scree_pair_list list)
+{
+    if (batch->num_keys == 0) return;
+    const int64_t begin = scree_atomic_count(list.num_keys, batch->num_keys);
+    for (int32_t k = 0; k < batch->num_keys && begin + k < list.max_keys; ++k)
+        list.keys[begin + k] = batch->keys[k * SCREE_PAIR_STRIDE];
+}
+
 SCREE_FN void scree_pair_batch_add(scree_pair_batch *batch, scree_pair_list list, int32_t a, int32_t b)
 {
     if (batch->num_keys == SCREE_PAIR_BATCH)
     {
-        scree_pair_list_append(list, batch->keys, batch->num_keys);
+        scree_pair_batch_append(batch, list);
         batch->num_keys = 0;
     }
-    batch->keys[batch->num_keys++] = scree_pair_key(list, a, b);
+    batch->keys[batch->num_keys++ * SCREE_PAIR_STRIDE] = scree_pair_key(list, a, b);
 }
 
 /// Pairs of particles.
@@ -75,8 +95,8 @@ SCREE_FN void scree_particle_pairs_at(scree_particle_pairs_args a, int64_t k)
 {
     const scree_lbvh_node node = a.tree.nodes[k];
     if (node.first_child >= 0) return;
-    scree_pair_batch batch;
-    batch.num_keys = 0;
+    SCREE_PAIR_KEYS(keys);
+    scree_pair_batch batch = {keys, 0};
     int32_t next = node.escape;
     for (;;)
     {
@@ -85,7 +105,7 @@ SCREE_FN void scree_particle_pairs_at(scree_particle_pairs_args a, int64_t k)
         if (scree_spheres_overlap(a.centres, a.radii, -1 - node.first_child, other))
             scree_pair_batch_add(&batch, a.list, -1 - node.first_child, other);
     }
-    scree_pair_list_append(a.list, batch.keys, batch.num_keys);
+    scree_pair_batch_append(&batch, a.list);
 }
 
 /// Pairs of a particle and a wall.
@@ -119,8 +139,8 @@ SCREE_FN void scree_wall_pairs_at(scree_wall_pairs_args a, int64_t block)
 {
     const int64_t begin = block * a.block_particles;
     const int64_t end = begin + a.block_particles < a.num_particles ? begin + a.block_particles : a.num_particles;
-    scree_pair_batch batch;
-    batch.num_keys = 0;
+    SCREE_PAIR_KEYS(keys);
+    scree_pair_batch batch = {keys, 0};
     for (int64_t w = 0; w < a.num_walls; ++w)
     {
         if (!a.walls[w].is_present) continue;
@@ -132,7 +152,7 @@ SCREE_FN void scree_wall_pairs_at(scree_wall_pairs_args a, int64_t block)
                 scree_pair_batch_add(&batch, a.list, (int32_t)i, (int32_t)(a.num_particles + w));
         }
     }
-    scree_pair_list_append(a.list, batch.keys, batch.num_keys);
+    scree_pair_batch_append(&batch, a.list);
 }
 
 /// Sorted keys to pairs and rows. A body's row holds the pairs in which it is the second body, then those in which it

@@ -193,6 +193,19 @@ static scree_status reserve_found(scree_narrow_phase *narrow_phase, int32_t max_
     return SCREE_OK;
 }
 
+/// Results of one pair that there is room for to begin with.
+static int32_t first_results(const scree_narrow_phase *narrow_phase)
+{
+    return narrow_phase->options.separate_patches ? 4 : 1;
+}
+
+int64_t scree_narrow_phase_overlap_bytes(const scree_narrow_phase *narrow_phase)
+{
+    const int64_t num = num_at_once(narrow_phase, narrow_phase->classes.first);
+    const int64_t results = first_results(narrow_phase) * (int64_t)sizeof(scree_overlap_result);
+    return scree_overlap_pool_bytes(narrow_phase->device, num, narrow_phase->room) + num * results;
+}
+
 /// Slices for the overlaps, and room for max_results of the pair that each works on.
 static scree_status reserve_slices(scree_narrow_phase *narrow_phase, scree_overlap_room room, int32_t max_results)
 {
@@ -216,9 +229,8 @@ static scree_status start_results(scree_narrow_phase *narrow_phase, bool has_lev
 {
     const struct scree_narrow_phase_buffers *b = narrow_phase->buffers;
     const scree_overlap_room usual = {512, 1024, 128};
-    const scree_status status =
-        reserve_slices(narrow_phase, narrow_phase->room.max_pieces > 0 ? narrow_phase->room : usual,
-                       narrow_phase->options.separate_patches ? 4 : 1);
+    const scree_status status = reserve_slices(
+        narrow_phase, narrow_phase->room.max_pieces > 0 ? narrow_phase->room : usual, first_results(narrow_phase));
     const int64_t num = b->batches[SCREE_PAIR_MESH_MESH].num;
     if (status != SCREE_OK || num == 0 || b->max_kept > 0) return status;
     return reserve_kept(narrow_phase, num / 8 + 1, has_levers);

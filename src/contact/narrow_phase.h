@@ -84,6 +84,8 @@ scree_status scree_narrow_phase_find(scree_narrow_phase *narrow_phase, const scr
 void scree_narrow_phase_again(scree_narrow_phase *narrow_phase, const scree_bodies *bodies,
                               const scree_candidate_pair *pairs, int64_t num_pairs, scree_contact_list *list,
                               struct scree_live *live);
+/// Memory [bytes] that overlaps of pairs of meshes will work in, as `narrow_phase` is set up.
+int64_t scree_narrow_phase_overlap_bytes(const scree_narrow_phase *narrow_phase);
 /// Takes up what was counted, from a copy on the CPU.
 void scree_narrow_phase_take_counts(scree_narrow_phase *narrow_phase, const struct scree_pair_tally *tally);
 void scree_narrow_phase_destroy(scree_narrow_phase *narrow_phase);

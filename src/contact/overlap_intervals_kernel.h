@@ -36,14 +36,6 @@ SCREE_FN int32_t *scree_overlap_patch_of(scree_overlap_slice *slice, scree_overl
                             : &slice->body[corner.kind].vertices[corner.index].patch;
 }
 
-/// Where a walk along one edge is: crossings and ends of it that may still start or end an interval.
-typedef struct scree_interval_walk
-{
-    int32_t v[2];        ///< the edge's first and last vertex
-    int32_t num_left[2]; ///< how often each of them counts: 0 or 1
-    int32_t crossing[2]; ///< the next that may enter, the next that may leave; -1: none
-} scree_interval_walk;
-
 /// Bits of the sides of kept triangle t, finished, that have intervals, among those that run up their vertex ids here.
 SCREE_FN uint64_t scree_overlap_inside_sides(const scree_overlap_body *body, int32_t t)
 {

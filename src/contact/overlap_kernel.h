@@ -345,7 +345,7 @@ SCREE_FN int32_t scree_overlap_team_compute(const scree_team *team, const scree_
     results[0] = scree_overlap_nothing(status);
     if (status != SCREE_OVERLAP_TOUCHING) return 1;
     int32_t num = 1;
-    if (options->separate_patches && scree_overlap_find_patches(slice, slice->shape) > 1)
+    if (options->separate_patches && scree_overlap_find_patches(slice) > 1)
         num = scree_overlap_patch_results(slice, pair->pose[0], results, max_results);
     else results[0] = scree_overlap_to_world(slice, pair->pose[0]);
     for (int32_t i = 0; i < num && i < max_results; ++i) results[i].used_fallback = slice->used_fallback;

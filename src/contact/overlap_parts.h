@@ -160,6 +160,31 @@ typedef struct scree_overlap_setup
     scree_real extents[2]; ///< largest side of each body's own box, in units of A
 } scree_overlap_setup;
 
+/// Where a walk along one edge is: crossings and ends of it that may still start or end an interval.
+typedef struct scree_interval_walk
+{
+    int32_t v[2];        ///< the edge's first and last vertex
+    int32_t num_left[2]; ///< how often each of them counts: 0 or 1
+    int32_t crossing[2]; ///< the next that may enter, the next that may leave; -1: none
+} scree_interval_walk;
+
+/// Walks over the edges of the solid: segments, intervals of A, intervals of B.
+typedef struct scree_edge_walk
+{
+    int32_t part, next, side; ///< of the segments or triangles
+    bool is_on_edge;          ///< the interval walk below goes on
+    scree_interval_walk intervals;
+} scree_edge_walk;
+
+/// An edge of the solid with its two faces, which are of the same body for an interval.
+typedef struct scree_solid_edge
+{
+    scree_vec3 point[2];
+    int32_t corner[2];            ///< by number
+    int32_t body_left, face_left; ///< runs from point 0 to point 1 with the face on its left
+    int32_t body_right, face_right;
+} scree_solid_edge;
+
 /// Everything one overlap works on: borrowed buffers of one thread.
 typedef struct scree_overlap_slice
 {
@@ -181,10 +206,13 @@ typedef struct scree_overlap_slice
     scree_overlap_setup setup;
     scree_filter_region region[2]; ///< what triangles of A, of B must reach into
     scree_overlap_sums sums;
-    scree_segment_end ends[2][6];  ///< of two triangles decided side by side: first ends, last ends
-    scree_convex_planes planes[2]; ///< of the convex path
-    scree_wide_walk walk;          ///< over a tree
-    scree_levels levels;           ///< of the hierarchy
+    scree_segment_end ends[2][6];   ///< of two triangles decided side by side: first ends, last ends
+    scree_convex_planes planes[2];  ///< of the convex path
+    scree_edge_walk edge_walk[2];   ///< of patches
+    scree_solid_edge solid_edge[2]; ///< where these are
+    scree_overlap_sums patch_sums;  ///< while patches are told apart
+    scree_wide_walk walk;           ///< over a tree
+    scree_levels levels;            ///< of the hierarchy
 } scree_overlap_slice;
 
 #endif

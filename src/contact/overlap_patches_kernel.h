@@ -59,24 +59,7 @@ SCREE_FN bool scree_patch_is_corner(const scree_overlap_slice *slice, int32_t nu
     return slice->body[1].num_inside > 0 && slice->body[1].vertices[number - num_a].inside != 0;
 }
 
-/// Walks over the edges of the solid: segments, intervals of A, intervals of B.
-typedef struct scree_edge_walk
-{
-    int32_t part, next, side; ///< of the segments or triangles
-    bool is_on_edge;          ///< the interval walk below goes on
-    scree_interval_walk intervals;
-} scree_edge_walk;
-
-/// An edge of the solid with its two faces, which are of the same body for an interval.
-typedef struct scree_solid_edge
-{
-    scree_vec3 point[2];
-    int32_t corner[2];            ///< by number
-    int32_t body_left, face_left; ///< runs from point 0 to point 1 with the face on its left
-    int32_t body_right, face_right;
-} scree_solid_edge;
-
-SCREE_FN bool scree_next_segment(scree_overlap_slice *slice, scree_edge_walk *walk, scree_solid_edge *edge)
+SCREE_FN bool scree_next_segment(const scree_overlap_slice *slice, scree_edge_walk *walk, scree_solid_edge *edge)
 {
     while (walk->next < slice->num_segments)
     {
@@ -96,10 +79,13 @@ SCREE_FN bool scree_next_segment(scree_overlap_slice *slice, scree_edge_walk *wa
     return false;
 }
 
-/// Next edge of the solid; start from a zeroed walk. False at the end.
-SCREE_FN bool scree_next_solid_edge(scree_overlap_slice *slice, const scree_shape_view *const *shape,
-                                    scree_edge_walk *walk, scree_solid_edge *edge)
+/// Walk `number` of the slice, of which one may go on while the other does, to the next edge of the solid. False at the
+/// end.
+SCREE_FN_APART bool scree_next_solid_edge(scree_overlap_slice *slice, int32_t number)
 {
+    scree_edge_walk *walk = slice->edge_walk + number;
+    scree_solid_edge *edge = slice->solid_edge + number;
+    const scree_shape_view *const *shape = slice->shape;
     if (walk->part == 0)
     {
         if (scree_next_segment(slice, walk, edge)) return true;
@@ -143,14 +129,15 @@ SCREE_FN bool scree_next_solid_edge(scree_overlap_slice *slice, const scree_shap
     return false;
 }
 
-SCREE_FN scree_edge_walk scree_edge_walk_start(void)
+/// Starts walk `number`. Returns where its edges will be.
+SCREE_FN const scree_solid_edge *scree_walk_edges(scree_overlap_slice *slice, int32_t number)
 {
-    scree_edge_walk walk;
-    walk.part = 0;
-    walk.next = 0;
-    walk.side = 0;
-    walk.is_on_edge = false;
-    return walk;
+    scree_edge_walk *walk = slice->edge_walk + number;
+    walk->part = 0;
+    walk->next = 0;
+    walk->side = 0;
+    walk->is_on_edge = false;
+    return slice->solid_edge + number;
 }
 
 /// A point without the coordinate along which the face's normal is largest.
@@ -166,23 +153,22 @@ SCREE_FN void scree_in_plane(const scree_face *face, scree_vec3 p, scree_real *x
 }
 
 /// Does the loop of tree `root` on a face run around a point? By the parity of its edges along a ray in the plane.
-SCREE_FN bool scree_patch_surrounds(scree_overlap_slice *slice, const scree_shape_view *const *shape, int32_t body,
-                                    int32_t triangle, int32_t root, scree_vec3 point)
+SCREE_FN bool scree_patch_surrounds(scree_overlap_slice *slice, int32_t body, int32_t triangle, int32_t root,
+                                    scree_vec3 point)
 {
     const scree_face *face = &slice->body[body].triangles[triangle].face;
     scree_real px, py;
     scree_in_plane(face, point, &px, &py);
     bool is_around = false;
-    scree_edge_walk walk = scree_edge_walk_start();
-    scree_solid_edge edge;
-    while (scree_next_solid_edge(slice, shape, &walk, &edge))
+    const scree_solid_edge *edge = scree_walk_edges(slice, 1);
+    while (scree_next_solid_edge(slice, 1))
     {
-        const bool is_on_face = (edge.body_left == body && edge.face_left == triangle) ||
-                                (edge.body_right == body && edge.face_right == triangle);
-        if (!is_on_face || scree_patch_root(slice, edge.corner[0]) != root) continue;
+        const bool is_on_face = (edge->body_left == body && edge->face_left == triangle) ||
+                                (edge->body_right == body && edge->face_right == triangle);
+        if (!is_on_face || scree_patch_root(slice, edge->corner[0]) != root) continue;
         scree_real x0, y0, x1, y1;
-        scree_in_plane(face, edge.point[0], &x0, &y0);
-        scree_in_plane(face, edge.point[1], &x1, &y1);
+        scree_in_plane(face, edge->point[0], &x0, &y0);
+        scree_in_plane(face, edge->point[1], &x1, &y1);
         if ((y0 > py) != (y1 > py) && px < x0 + (x1 - x0) * ((py - y0) / (y1 - y0))) is_around = !is_around;
     }
     return is_around;
@@ -190,17 +176,16 @@ SCREE_FN bool scree_patch_surrounds(scree_overlap_slice *slice, const scree_shap
 
 /// Joins holes of tree `root` to the loops around them, by the sums over this tree: on a face with a hole its boundary
 /// runs the wrong way round. True if something was joined.
-SCREE_FN bool scree_patch_join_holes(scree_overlap_slice *slice, const scree_shape_view *const *shape, int32_t root)
+SCREE_FN bool scree_patch_join_holes(scree_overlap_slice *slice, int32_t root)
 {
-    scree_edge_walk walk = scree_edge_walk_start();
-    scree_solid_edge edge;
-    while (scree_next_solid_edge(slice, shape, &walk, &edge))
+    const scree_solid_edge *edge = scree_walk_edges(slice, 0);
+    while (scree_next_solid_edge(slice, 0))
     {
-        if (scree_patch_root(slice, edge.corner[0]) != root) continue;
+        if (scree_patch_root(slice, edge->corner[0]) != root) continue;
         for (int32_t turn = 0; turn < 2; ++turn)
         {
-            const int32_t body = turn == 0 ? edge.body_left : edge.body_right;
-            const int32_t triangle = turn == 0 ? edge.face_left : edge.face_right;
+            const int32_t body = turn == 0 ? edge->body_left : edge->body_right;
+            const int32_t triangle = turn == 0 ? edge->face_left : edge->face_right;
             const scree_overlap_triangle *t = slice->body[body].triangles + triangle;
             const scree_real along = scree_vec3_dot(t->face.normal, t->boundary);
             if (!t->has_foot || !(along < 0)) continue;
@@ -208,7 +193,7 @@ SCREE_FN bool scree_patch_join_holes(scree_overlap_slice *slice, const scree_sha
             {
                 if (other == root || !scree_patch_is_corner(slice, other)) continue;
                 if (*scree_patch_parent(slice, other) != other) continue;
-                if (!scree_patch_surrounds(slice, shape, body, triangle, other, edge.point[0])) continue;
+                if (!scree_patch_surrounds(slice, body, triangle, other, edge->point[0])) continue;
                 scree_patch_join(slice, root, other);
                 return true;
             }
@@ -227,14 +212,14 @@ SCREE_FN int32_t scree_patch_next_root(scree_overlap_slice *slice, int32_t numbe
 }
 
 /// Sums over one tree, while trees are still being joined: every label is a root then.
-SCREE_FN void scree_patch_sum(scree_overlap_slice *slice, const scree_shape_view *const *shape, int32_t root,
-                              scree_overlap_sums *sums)
+SCREE_FN_APART scree_real scree_patch_sum(scree_overlap_slice *slice, int32_t root)
 {
     for (int32_t number = 0; number < scree_patch_num_corners(slice); ++number)
         if (scree_patch_is_corner(slice, number)) *scree_patch_parent(slice, number) = scree_patch_root(slice, number);
     slice->num_patches = 2;
     const scree_team team = scree_team_alone();
-    scree_overlap_sum(&team, slice, shape, root, sums);
+    scree_overlap_sum(&team, slice, slice->shape, root, &slice->patch_sums);
+    return slice->patch_sums.six_volume;
 }
 
 /// Is a point, in the plane of x and y, on the left of the way from a to b? On the way itself it is imagined moved by
@@ -260,41 +245,34 @@ SCREE_FN int32_t scree_patch_ray_leaves(scree_vec3 p, scree_vec3 a, scree_vec3 x
 }
 
 /// Does the piece of tree `root` go around a point? Each face is a fan of triangles from a corner of the body's face.
-SCREE_FN bool scree_patch_contains(scree_overlap_slice *slice, const scree_shape_view *const *shape, int32_t root,
-                                   scree_vec3 point)
+SCREE_FN bool scree_patch_contains(scree_overlap_slice *slice, int32_t root, scree_vec3 point)
 {
     int32_t num_left = 0;
-    scree_edge_walk walk = scree_edge_walk_start();
-    scree_solid_edge edge;
-    while (scree_next_solid_edge(slice, shape, &walk, &edge))
+    const scree_solid_edge *edge = scree_walk_edges(slice, 1);
+    while (scree_next_solid_edge(slice, 1))
     {
-        if (scree_patch_root(slice, edge.corner[0]) != root) continue;
-        const scree_face *left = &slice->body[edge.body_left].triangles[edge.face_left].face;
-        const scree_face *right = &slice->body[edge.body_right].triangles[edge.face_right].face;
-        num_left += scree_patch_ray_leaves(point, left->p[0], edge.point[0], edge.point[1],
+        if (scree_patch_root(slice, edge->corner[0]) != root) continue;
+        const scree_face *left = &slice->body[edge->body_left].triangles[edge->face_left].face;
+        const scree_face *right = &slice->body[edge->body_right].triangles[edge->face_right].face;
+        num_left += scree_patch_ray_leaves(point, left->p[0], edge->point[0], edge->point[1],
                                            scree_face_height(left, point), left->normal.z);
-        num_left += scree_patch_ray_leaves(point, right->p[0], edge.point[1], edge.point[0],
+        num_left += scree_patch_ray_leaves(point, right->p[0], edge->point[1], edge->point[0],
                                            scree_face_height(right, point), right->normal.z);
     }
     return num_left != 0;
 }
 
 /// Joins shells that are turned inside out to the pieces that they are hollows of. `most`: the largest volume, times 6.
-SCREE_FN void scree_patch_join_hollows(scree_overlap_slice *slice, const scree_shape_view *const *shape,
-                                       scree_real most)
+SCREE_FN void scree_patch_join_hollows(scree_overlap_slice *slice, scree_real most)
 {
     for (int32_t root = scree_patch_next_root(slice, 0); root >= 0; root = scree_patch_next_root(slice, root + 1))
     {
-        scree_overlap_sums sums;
-        scree_patch_sum(slice, shape, root, &sums);
-        if (!(sums.six_volume < -1000 * SCREE_REAL_EPSILON * most)) continue;
-        scree_edge_walk walk = scree_edge_walk_start();
-        scree_solid_edge edge;
-        bool has_edge = scree_next_solid_edge(slice, shape, &walk, &edge);
-        while (has_edge && scree_patch_root(slice, edge.corner[0]) != root)
-            has_edge = scree_next_solid_edge(slice, shape, &walk, &edge);
+        if (!(scree_patch_sum(slice, root) < -1000 * SCREE_REAL_EPSILON * most)) continue;
+        const scree_solid_edge *edge = scree_walk_edges(slice, 0);
+        bool has_edge = scree_next_solid_edge(slice, 0);
+        while (has_edge && scree_patch_root(slice, edge->corner[0]) != root) has_edge = scree_next_solid_edge(slice, 0);
         int32_t other = has_edge ? scree_patch_next_root(slice, 0) : -1;
-        while (other >= 0 && (other == root || !scree_patch_contains(slice, shape, other, edge.point[0])))
+        while (other >= 0 && (other == root || !scree_patch_contains(slice, other, edge->point[0])))
             other = scree_patch_next_root(slice, other + 1);
         if (other >= 0) scree_patch_join(slice, root, other);
     }
@@ -302,31 +280,28 @@ SCREE_FN void scree_patch_join_hollows(scree_overlap_slice *slice, const scree_s
 
 /// Labels the corners of the solid by patch, from 0; returns the number of patches. With several, slice->num_patches
 /// is set and sums can be asked of each.
-SCREE_FN_APART int32_t scree_overlap_find_patches(scree_overlap_slice *slice, const scree_shape_view *const *shape)
+SCREE_FN_APART int32_t scree_overlap_find_patches(scree_overlap_slice *slice)
 {
     const int32_t num_corners = scree_patch_num_corners(slice);
     for (int32_t number = 0; number < num_corners; ++number)
         if (scree_patch_is_corner(slice, number)) *scree_patch_parent(slice, number) = number;
-    scree_edge_walk walk = scree_edge_walk_start();
-    scree_solid_edge edge;
-    while (scree_next_solid_edge(slice, shape, &walk, &edge)) scree_patch_join(slice, edge.corner[0], edge.corner[1]);
+    const scree_solid_edge *edge = scree_walk_edges(slice, 0);
+    while (scree_next_solid_edge(slice, 0)) scree_patch_join(slice, edge->corner[0], edge->corner[1]);
 
     scree_real most = 0;
     for (int32_t root = scree_patch_next_root(slice, 0); root >= 0;)
     {
-        scree_overlap_sums sums;
         const bool is_only = root == scree_patch_next_root(slice, 0) && scree_patch_next_root(slice, root + 1) < 0;
         if (is_only) break;
-        scree_patch_sum(slice, shape, root, &sums);
-        most = scree_max(most, sums.six_volume);
-        if (scree_patch_join_holes(slice, shape, root))
+        most = scree_max(most, scree_patch_sum(slice, root));
+        if (scree_patch_join_holes(slice, root))
         {
             root = scree_patch_next_root(slice, 0);
             most = 0;
         }
         else root = scree_patch_next_root(slice, root + 1);
     }
-    if (most > 0) scree_patch_join_hollows(slice, shape, most);
+    if (most > 0) scree_patch_join_hollows(slice, most);
 
     // roots become labels in their order; a root is never after what hangs on it
     int32_t num = 0;

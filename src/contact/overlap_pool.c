@@ -75,6 +75,20 @@ static scree_status fill(scree_overlap_pool *pool, int64_t num_slices, scree_ove
     return SCREE_OUT_OF_MEMORY;
 }
 
+/// Slices of so many bytes that there is memory for.
+static int64_t limit_slices(scree_device *device, int64_t num_slices, int64_t num_bytes)
+{
+    if (device == NULL) return num_slices;
+    const int64_t most = scree_device_free_memory(device) / SHARE_OF_MEMORY / num_bytes;
+    return num_slices < most ? num_slices : most > 1 ? most : 1;
+}
+
+int64_t scree_overlap_pool_bytes(scree_device *device, int64_t num_slices, scree_overlap_room room)
+{
+    const int64_t num_bytes = scree_overlap_slice_bytes(room);
+    return limit_slices(device, num_slices, num_bytes) * (num_bytes + (int64_t)sizeof(scree_overlap_slice));
+}
+
 static int32_t larger(int32_t a, int32_t b) { return a > b ? a : b; }
 
 scree_status scree_overlap_pool_reserve(scree_overlap_pool *pool, int64_t num_slices, scree_overlap_room room)
@@ -90,11 +104,7 @@ scree_status scree_overlap_pool_reserve(scree_overlap_pool *pool, int64_t num_sl
     num_slices = num_wanted;
     const int64_t num_bytes = scree_overlap_slice_bytes(room);
     scree_overlap_pool_destroy(pool);
-    if (pool->device != NULL)
-    {
-        const int64_t most = scree_device_free_memory(pool->device) / SHARE_OF_MEMORY / num_bytes;
-        if (num_slices > most) num_slices = most > 1 ? most : 1;
-    }
+    num_slices = limit_slices(pool->device, num_slices, num_bytes);
     pool->num_wanted = num_wanted;
     return fill(pool, num_slices, room, num_bytes);
 }

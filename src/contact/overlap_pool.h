@@ -30,6 +30,8 @@ int64_t scree_overlap_slice_bytes(scree_overlap_room room);
 /// At least so much room in each of num_slices; fewer slices if memory has no room for all, but one at least.
 /// SCREE_OUT_OF_MEMORY, SCREE_TOO_MANY.
 scree_status scree_overlap_pool_reserve(scree_overlap_pool *pool, int64_t num_slices, scree_overlap_room room);
+/// Bytes of a pool.
+int64_t scree_overlap_pool_bytes(scree_device *device, int64_t num_slices, scree_overlap_room room);
 void scree_overlap_pool_destroy(scree_overlap_pool *pool);
 
 #endif

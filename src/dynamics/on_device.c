@@ -38,6 +38,37 @@ static scree_work_classes classes_of(const scree_simulation *here)
     return most > 0 ? classes : none;
 }
 
+/// Most triangles of a shape of particles or walls.
+static int32_t largest_shape(const scree_simulation *here)
+{
+    int32_t largest = 8;
+    for (int32_t k = 0; k < 2 * here->num_shapes; ++k)
+        if (here->shape_views[k].num_triangles > largest) largest = here->shape_views[k].num_triangles;
+    return largest;
+}
+
+/// Room of an overlap that most pairs of these shapes get along with; more is made where it is needed.
+static scree_overlap_room choose_room(int32_t largest)
+{
+    // shapes that are gone through as a whole need one more than they have triangles
+    const int32_t max_pieces = largest < MAX_PIECES ? largest + 1 : MAX_PIECES;
+    const scree_overlap_room room = {max_pieces, largest < MAX_SHAPE ? largest : MAX_SHAPE, max_pieces};
+    return room;
+}
+
+/// Memory [bytes] that overlaps will work in; 0 if there are no meshes among the particles.
+static int64_t overlap_bytes(const scree_simulation *here, scree_device *device)
+{
+    bool has_meshes = false;
+    for (int32_t k = 0; k < here->num_shapes; ++k) has_meshes |= here->shape_views[k].kind == SCREE_KIND_MESH;
+    if (!has_meshes) return 0;
+    const scree_narrow_phase there = {.device = device,
+                                      .room = choose_room(largest_shape(here)),
+                                      .classes = classes_of(here),
+                                      .options = here->narrow_phase.options};
+    return scree_narrow_phase_overlap_bytes(&there);
+}
+
 scree_device_memory scree_device_memory_of(const scree_simulation *simulation)
 {
     const scree_plan_bytes bytes = scree_simulation_plan_bytes(simulation);
@@ -47,7 +78,10 @@ scree_device_memory scree_device_memory_of(const scree_simulation *simulation)
     scree_device_memory memory;
     memory.per_particle = (int64_t)(bytes.state + bytes.search);
     memory.per_pair = (int64_t)(SLACK * (double)((size_t)scree_plan_largest_pair(&bytes) + lists));
-    memory.per_contact = (int64_t)(SLACK * (double)(bytes.contact + 2 * sizeof(scree_contact_side)));
+    // accounts of collisions now and in the step before, places and what comes to the host of those that have ended
+    const size_t collision =
+        simulation->averages.num_bins > 0 ? 4 * sizeof(double) + sizeof(int64_t) + sizeof(scree_ended_collision) : 0;
+    memory.per_contact = (int64_t)(SLACK * (double)(bytes.contact + 2 * sizeof(scree_contact_side) + collision));
     const int64_t num = simulation->particles.num_particles, num_pairs = simulation->counters.num_pairs,
                   num_contacts = simulation->counters.num_contacts;
     memory.num_pairs = num_pairs > BED_PAIRS * num ? num_pairs : BED_PAIRS * num;
@@ -130,23 +164,6 @@ static scree_status copy_buffers(scree_simulation *there, const scree_simulation
     return scree_wall_axes_create(there);
 }
 
-/// Most triangles of a shape of particles.
-static int32_t largest_shape(const scree_simulation *here)
-{
-    int32_t largest = 8;
-    for (int32_t k = 0; k < here->num_shapes; ++k)
-        if (here->shape_views[k].num_triangles > largest) largest = here->shape_views[k].num_triangles;
-    return largest;
-}
-
-/// Room of an overlap that most pairs of these shapes get along with; more is made where it is needed.
-static scree_overlap_room choose_room(int32_t largest)
-{
-    const int32_t max_pieces = largest < MAX_PIECES ? largest : MAX_PIECES;
-    const scree_overlap_room room = {max_pieces, largest < MAX_SHAPE ? largest : MAX_SHAPE, max_pieces};
-    return room;
-}
-
 static scree_status move(scree_simulation *there, scree_simulation *here)
 {
     scree_device *device = there->device;
@@ -181,7 +198,12 @@ static scree_status take_memory(const scree_simulation *s, scree_device *device,
 {
     const scree_device_memory memory = scree_device_memory_of(s);
     const int64_t num_free = scree_device_free_memory(device);
-    if (memory.total <= num_free && scree_device_take(device, memory.total)) return SCREE_OK;
+    if (memory.total <= num_free)
+    {
+        // buffers of overlaps get along with what is left
+        const int64_t left = num_free - memory.total, overlaps = overlap_bytes(s, device);
+        if (scree_device_take(device, memory.total + (overlaps < left ? overlaps : left))) return SCREE_OK;
+    }
     scree_report_add(
         report,
         "GPU \"%s\" has %.0f MB of free memory, the scene needs about %.0f MB (%lld particles of %lld "

@@ -22,18 +22,13 @@ LIMITS = {"80": (64, 32), "90": (64, 32), "120": (48, 24)}
 PRECISIONS = {"double": "Double precision", "float": "Single precision"}
 
 # kernels that may have a frame or spills in both precisions, and why
-REASONS = {
-    "scree_particle_pairs": "32 keys wait in a batch, so that one atomic serves them all; runs at neighbour searches only",
-    "scree_wall_pairs": "as scree_particle_pairs",
-    "scree_overlap_patches": "as scree_overlap_pairs in double precision; telling patches apart, by one lane, sums over the edges of each tree of corners anew; "
-    "only where a scene asks for patches",
-}
+REASONS = {}
 
 # the same in one precision only
 REASONS_IN = {
     "double": {
-        "scree_overlap_pairs": "a whole overlap by a team of lanes, with all registers there are: one of them waits while two triangles "
-        "are decided side by side by the hierarchy, which is rare",
+        "scree_overlap_patches": "a whole overlap by a team of lanes, with all registers there are; telling patches apart, by one lane, "
+        "sums over the edges of each tree of corners anew; only where a scene asks for patches",
     },
     "float": {},
 }

@@ -111,6 +111,7 @@ static const scree_shape_view *shapes_on(side &where)
         view.vertices = where.copy(view.vertices, view.num_vertices);
         view.triangles = where.copy(view.triangles, view.num_triangles);
         view.neighbours = where.copy(view.neighbours, 3 * (int64_t)view.num_triangles);
+        view.normals = where.copy(view.normals, view.num_triangles);
         view.tree.nodes = where.copy(view.tree.nodes, 2 * (int64_t)view.tree.num_leaves - 1);
         if (view.flat_faces != nullptr) view.flat_faces = where.copy(view.flat_faces, view.num_triangles);
         scree_wide_tree_view &wide = view.wide_tree;

@@ -225,6 +225,60 @@ static void test_sides_change_at_checkpoints()
 
 #if defined(CUDA_ON_CPU) && !defined(CUDA_ON_CPU_RACES)
 #define TEST_MEMORY 1
+/// A cube of bodies that touch or nearly do.
+static std::string cube(const char *shape, double spacing)
+{
+    std::string text = std::string("name: cube\ntime: {end: 0.012, step: 1e-5}\n") + head +
+                       "shapes:\n  - {name: ball, source: sphere, size: 0.016}\n  - {name: rock, source: rock, "
+                       "triangles: 40, seed: 3}\n" +
+                       wall_shapes + "particles:\n  - name: bodies\n    shape: " + shape +
+                       "\n    material: stone\n    bodies:\n";
+    for (int k = 0; k < 512; ++k)
+    {
+        char body[128];
+        snprintf(body, sizeof body, "      - {size: 0.016, position: [%g, %g, %g]}\n", spacing * (k % 8 - 3.5),
+                 spacing * (k / 8 % 8 - 3.5), spacing * (k / 64 + 0.5));
+        text += body;
+    }
+    return text + "walls:\n  - {name: floor, shape: floor, material: steel, position: [0, 0, -0.01]}\n";
+}
+
+/// The arena of the start does for all steps, and the plan tells what they take.
+static void check_taken_up_front(const char *shape, double spacing, bool has_overlaps)
+{
+    scene_run run;
+    scene_run_start(&run, cube(shape, spacing).c_str());
+    scree_device *device = open_device(128, true, 1 << 18);
+    move(run.simulation, device);
+    const long num_before = cuda_on_cpu::num_allocations();
+    steps(run.simulation, 10);
+    SCREE_CHECK_INT(cuda_on_cpu::num_allocations(), num_before);
+    scene_run_end(&run);
+    scree_device_close(device);
+
+    scene_run_start(&run, cube(shape, spacing).c_str());
+    device = open_device(128, true, 0);
+    const int64_t num_free = scree_device_free_memory(device);
+    move(run.simulation, device);
+    steps(run.simulation, 10);
+    const scree_device_memory plan = scree_device_memory_of(run.simulation);
+    const scree_counters counters = scree_simulation_counters(run.simulation);
+    const int64_t planned = plan.shapes + plan.per_particle * run.simulation->particles.num_particles +
+                            plan.per_pair * counters.num_pairs + plan.per_contact * counters.num_contacts;
+    const int64_t taken = num_free - scree_device_free_memory(device);
+    printf("%s: %lld pairs, %lld contacts; planned for them %lld bytes, taken %lld\n", shape,
+           (long long)counters.num_pairs, (long long)counters.num_contacts, (long long)planned, (long long)taken);
+    // buffers of overlaps come on top
+    if (!has_overlaps) SCREE_CHECK(taken <= planned && taken > planned / 2);
+    scene_run_end(&run);
+    scree_device_close(device);
+}
+static void test_memory_up_front()
+{
+    check_taken_up_front("ball", 0.0159, false);
+    check_taken_up_front("rock", 0.0222, true);
+}
+
 /// Contacts become more and more: arrays are taken in steps that search, and in no other.
 static void check_taken_at_searches(const std::string &text, bool records)
 {
@@ -308,6 +362,7 @@ int main()
     SCREE_RUN(test_call_by_call);
     SCREE_RUN(test_sides_change_at_checkpoints);
 #ifdef TEST_MEMORY
+    SCREE_RUN(test_memory_up_front);
     SCREE_RUN(test_memory_is_taken_at_searches);
     SCREE_RUN(test_memory_ends);
 #endif

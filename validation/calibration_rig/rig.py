@@ -41,7 +41,7 @@ def walls_and_shapes(scale, depth, opening):
         add(name, (scale * length, depth, scale * thickness), (scale * x, depth / 2, scale * z), orientation=turned(turn))
     for name, x, hinge, speed in DOORS:
         motion = {"kind": "rotate", "axis": [0, 1, 0], "centre": [scale * hinge, 0, scale * 0.227], "angular_velocity": speed,
-                  "start": opening, "end": opening + QUARTER_TURN / abs(speed)}
+                  "start": opening, "end": opening + QUARTER_TURN / abs(speed), "opens": True}
         add(name, (scale * 0.031, depth, scale * 0.006), (scale * x, depth / 2, scale * 0.227), motion=motion)
     for name, y in (("side_front", -0.005), ("side_rear", depth + 0.005)):
         add(name, (scale * 0.39, 0.01, scale * (CHUTE + 0.31)), (scale * 0.175, y, scale * (CHUTE / 2 + 0.135)), "side")

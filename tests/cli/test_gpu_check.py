@@ -31,7 +31,7 @@ SHORT = """#!/usr/bin/env bash
 case "$1 $*" in
 run*two_spheres*cuda*) [ -z "${WRONG:-}" ] || set -- "$@" --set gravity.2=-3 ;;&
 run*) exec "PROGRAM" "$@" --set time.end=1e-4 ;;
-bench*) exec "PROGRAM" "$@" --steps 2 --repetitions 3 ;;
+bench*) exec "PROGRAM" "$@" --steps 2 --search-every 2 --repetitions 3 ;;
 esac
 """
 

@@ -146,9 +146,9 @@ def test_after_a_kernel_fault_the_run_goes_on_from_its_checkpoint(scene, tmp_pat
 
 
 def test_after_memory_has_ended_the_run_goes_on_from_its_checkpoint(scene, tmp_path):
-    # a wide device, whose buffers do not fit into what is taken at the start: more is asked for at the first pair, step 11
-    scene.write_text(SCENE.replace("checkpoint: 2e-3", "checkpoint: 1e-4"))
+    # a wide device and rocks of many triangles: at the first overlap of two, step 81, their buffers do not fit into what was taken at the start
+    scene.write_text(SCENE.replace("checkpoint: 2e-3", "checkpoint: 1e-4").replace("triangles: 20", "triangles: 600"))
     run(BUILD / "scree", scene, tmp_path / "whole")
-    done = run(EMULATED, scene, tmp_path / "broken", "--device", "cuda", expect=1, NO_MEMORY_AT=2, WORKERS=16)
-    assert "step 11" in done.stderr and "has no memory for" in done.stderr
+    done = run(EMULATED, scene, tmp_path / "broken", "--device", "cuda", expect=1, NO_MEMORY_AT=3, WORKERS=16)
+    assert "step 81" in done.stderr and "has no memory for" in done.stderr
     check_a_broken_run(scene, tmp_path / "broken", done, tmp_path / "whole")

@@ -158,8 +158,16 @@ static void read_in_another_stream(bool is_sound, bool is_captured)
         MUST_CUDA(cudaStreamEndCapture(stream[0], &graph));
         MUST_CUDA(cudaGraphInstantiate(&made, graph, 0));
         MUST_CUDA(cudaGraphLaunch(made, stream[0]));
+        MUST_CUDA(cudaDeviceSynchronize());
+        MUST_CUDA(cudaGraphExecDestroy(made));
+        MUST_CUDA(cudaGraphDestroy(graph));
     }
     MUST_CUDA(cudaDeviceSynchronize());
+    for (int k = 0; k < 2; ++k)
+    {
+        MUST_CUDA(cudaEventDestroy(event[k]));
+        MUST_CUDA(cudaStreamDestroy(stream[k]));
+    }
 }
 
 static void give_host_address()

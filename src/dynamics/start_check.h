@@ -33,8 +33,8 @@ scree_body_text scree_describe_body(const scree_simulation *simulation, int64_t 
 double scree_depth_in_mesh(const scree_simulation *simulation, int64_t body, scree_vec3 point, double reach,
                            scree_vec3 *normal);
 
-/// Refused: walls that reach into each other and move differently, unless one opens or they turn on each other where
-/// they are round. Told: walls that touch at the start and part later. Call with walls placed.
+/// Refused: walls that reach into each other and move differently, unless one opens or bears the other, as an end plate
+/// a shaft or a cylinder its piston. Told: walls that touch at the start and part later. Call with walls placed.
 scree_status scree_check_walls(const scree_simulation *simulation, scree_report *report);
 
 /// Which particles are in no closed vessel: is_outside (num_particles), not touched if no wall is one. `vessel` gets

@@ -19,7 +19,7 @@ STUDY = Study(__file__)
 STAGES = ["search", "contacts", "history", "forces", "gather", "work"]
 # Bilock (2020): one V100; bytes and seconds of a step
 THESIS_MEMORY = {1e6: 4.0e9, 1e7: 20.6e9}
-SCENE = ROOT / "scenes" / "gravity_packing.yaml"
+SCENE = "scenes/gravity_packing.yaml"  # from ROOT: results tell their options, and no path of a machine
 # a fall of centimetres instead of a metre, so that half of the run is a packing
 FALL = ["particles.fall.region.min=[-0.471,-0.471,0.005]", "particles.fall.spacing=1.05",
         f"particles.fall.count={64 if QUICK else 96}", "time.step=2e-5"]

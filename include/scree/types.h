@@ -156,9 +156,9 @@ extern "C"
         scree_size_def size;
         int64_t count;           ///< number to fill in; 0: by mass
         double mass;             ///< [kg] total to fill in; 0: by count
-        scree_region_def region; ///< to fill, from the bottom up
+        scree_region_def region; ///< to fill, from the bottom up; groups with the same one are mixed
         double spacing;          ///< [1] distance of the lattice over the largest bounding diameter, default 1.05
-        int64_t seed;            ///< of sizes, orientations and jitter
+        int64_t seed;            ///< of sizes, orientations, jitter and mixing
         double velocity[3];      ///< [m/s] initial
         scree_body_def *bodies;
         uint32_t num_bodies;

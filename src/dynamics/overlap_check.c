@@ -44,6 +44,21 @@ static double smaller_half_width(const scree_simulation *s, int64_t c)
                 half_width_of_part(s, pair.j, has_mesh ? part : part % num));
 }
 
+/// Is body a particle that was filled into a region?
+static bool is_filled(const scree_simulation *s, int64_t body)
+{
+    return body < s->particles.num_particles && s->scene->particles[s->particles.group[body]].num_bodies == 0;
+}
+
+/// What to do about two bodies that start in each other.
+static const char *remedy_for(const scree_simulation *s, scree_candidate_pair pair)
+{
+    if (is_filled(s, pair.i) && is_filled(s, pair.j))
+        return "give both groups the same region, which fills them in together, or regions that are apart";
+    return is_filled(s, pair.i) || is_filled(s, pair.j) ? "move one of them or the region of the particles"
+                                                        : "move one of them";
+}
+
 /// Contacts that are too deep. Returns their number.
 static int64_t check_contacts(const scree_simulation *s, scree_report *report)
 {
@@ -55,11 +70,9 @@ static int64_t check_contacts(const scree_simulation *s, scree_report *report)
         const double depth = (double)contacts->indentation[c], width = smaller_half_width(s, c);
         const bool is_wall = pair.j >= s->particles.num_particles;
         if (depth <= MAX_INDENTATION * width || ++num > SCREE_MAX_TOLD) continue;
-        scree_report_add(report,
-                         "%s starts %g m inside %s, more than %g of %s half width of %g m; move one of them or the "
-                         "region of the particles",
+        scree_report_add(report, "%s starts %g m inside %s, more than %g of %s half width of %g m; %s",
                          scree_describe_body(s, pair.i).text, depth, scree_describe_body(s, pair.j).text,
-                         MAX_INDENTATION, is_wall ? "its" : "the smaller one's", width);
+                         MAX_INDENTATION, is_wall ? "its" : "the smaller one's", width, remedy_for(s, pair));
     }
     scree_tell_more(report, num, "start inside others");
     return num;
@@ -164,11 +177,11 @@ static void tell_enclosed(const scree_simulation *s, scree_candidate_pair pair, 
     }
     const scree_body_text in = scree_describe_body(s, inner), out = scree_describe_body(s, outer);
     if (!(depth > 0))
-        scree_report_add(report, "%s and %s start in each other, and no direction leads apart; move one of them",
-                         in.text, out.text);
+        scree_report_add(report, "%s and %s start in each other, and no direction leads apart; %s", in.text, out.text,
+                         remedy_for(s, pair));
     else if (outer < num_particles)
-        scree_report_add(report, "%s starts inside %s, %g m below its surface; move one of them", in.text, out.text,
-                         depth);
+        scree_report_add(report, "%s starts inside %s, %g m below its surface; %s", in.text, out.text, depth,
+                         remedy_for(s, pair));
     else
         scree_report_add(report,
                          "%s starts inside the solid of %s, %g m below its surface; walls are closed solids: move the "
@@ -226,8 +239,8 @@ static scree_status check_enclosed(const scree_simulation *s, scree_report *repo
         if (!is_mesh_i && !is_mesh_j)
         {
             if (have_common_centre(s, pair) && ++*num <= SCREE_MAX_TOLD)
-                scree_report_add(report, "%s has the centre of %s; move one of them",
-                                 scree_describe_body(s, pair.i).text, scree_describe_body(s, pair.j).text);
+                scree_report_add(report, "%s has the centre of %s; %s", scree_describe_body(s, pair.i).text,
+                                 scree_describe_body(s, pair.j).text, remedy_for(s, pair));
             continue;
         }
         if (!is_mesh_i) is_enclosed = pair.j < num_particles && depth_inside(s, pair.i, pair.j) > 0;

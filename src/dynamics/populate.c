@@ -1,8 +1,18 @@
+/// \file populate.c
+/// Particles placed one by one, or filled in: one to a cell of a lattice, jittered and turned at random, so that none
+/// touch however they are turned. Groups with the same region share its lattice and are dealt to its cells at random.
 #include "dynamics/populate.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/// Particles along the edge of a cell at the most.
+#define MAX_SPLIT 1000
+
+/// Groups of a region that are named in a message; the others are counted.
+#define MAX_NAMED 5
 
 /// splitmix64 (Steele, Lea & Flood 2014): small, seedable, the same everywhere.
 static uint64_t random_bits(uint64_t *state)
@@ -59,13 +69,17 @@ static double draw_size(const scree_size_def *size, uint64_t *state)
     }
 }
 
-/// Sizes of one group, as scales of its shape.
+/// Sizes of one group, as scales of its shape, and how it is filled in.
 typedef struct drawn_group
 {
     double *scale; ///< (num)
     int64_t num;
     double largest_scale;
     int32_t shape, material;
+    int64_t first;     ///< of its particles, which follow each other
+    int64_t num_done;  ///< of them have their place
+    double diameter;   ///< [m] of the sphere around the largest one
+    int64_t max_split; ///< how many times the room of the largest one fits along the edge of a cell
 } drawn_group;
 
 static int32_t find_shape(const scree_scene *scene, const char *name)
@@ -115,84 +129,144 @@ static scree_status draw_group(const scree_simulation *s, const scree_particle_g
     }
 }
 
-/// Lattice of the group's region: cells of the largest bounding diameter times the spacing, numbered from the bottom
-/// up.
-typedef struct fill_lattice
+/// Groups with the same region, which are filled into it together. Each cell of the lattice holds the largest particle
+/// of all, and is numbered from the bottom up.
+typedef struct region_fill
 {
+    drawn_group *groups;    ///< of the scene
+    const int32_t *members; ///< (num_members) which of them
+    int32_t num_members;
+    int64_t num_particles, max_split; ///< of all members; of a cell along its edge
     double lower[3], cell;
     int64_t num[3];
-    double slack; ///< half the room around the largest particle in its cell
     scree_axis cylinder;
     double middle[3];        ///< [m] of the region
     double largest_distance; ///< [m] from the cylinder's axis, of the middle of a cell that can be used
-} fill_lattice;
+} region_fill;
 
-static void cell_middle(const fill_lattice *lattice, int64_t k, double middle[3])
+/// Parts of a cell, along its edge, when it is given to this group.
+static int64_t split_of(const region_fill *fill, const drawn_group *group)
 {
-    const int64_t cell[3] = {k % lattice->num[0], k / lattice->num[0] % lattice->num[1],
-                             k / lattice->num[0] / lattice->num[1]};
-    for (int d = 0; d < 3; ++d) middle[d] = lattice->lower[d] + ((double)cell[d] + 0.5) * lattice->cell;
+    return group->max_split < fill->max_split ? group->max_split : fill->max_split;
+}
+
+/// Middle of part k of a cell that is split along its edge.
+static void part_middle(const region_fill *fill, int64_t cell, int64_t split, int64_t k, double middle[3])
+{
+    const int64_t cells[3] = {cell % fill->num[0], cell / fill->num[0] % fill->num[1],
+                              cell / fill->num[0] / fill->num[1]};
+    const int64_t parts[3] = {k % split, k / split % split, k / split / split};
+    for (int d = 0; d < 3; ++d)
+        middle[d] = fill->lower[d] + ((double)(cells[d] * split + parts[d]) + 0.5) * (fill->cell / (double)split);
 }
 
 /// Is direction k across the axis of the cylinder?
-static bool is_across(const fill_lattice *lattice, int k)
+static bool is_across(const region_fill *fill, int k)
 {
-    return lattice->cylinder != SCREE_AXIS_NONE && k != (int)lattice->cylinder - SCREE_AXIS_X;
+    return fill->cylinder != SCREE_AXIS_NONE && k != (int)fill->cylinder - SCREE_AXIS_X;
 }
 
-/// Does the particle stay inside the region wherever it is put in cell k?
-static bool is_usable_cell(const fill_lattice *lattice, int64_t k)
+/// Does a particle stay inside the region wherever it is put in the cell?
+static bool is_usable_cell(const region_fill *fill, int64_t cell)
 {
-    if (lattice->cylinder == SCREE_AXIS_NONE) return true;
+    if (fill->cylinder == SCREE_AXIS_NONE) return true;
     double middle[3], squared = 0;
-    cell_middle(lattice, k, middle);
+    part_middle(fill, cell, 1, 0, middle);
     for (int d = 0; d < 3; ++d)
-        if (is_across(lattice, d)) squared += (middle[d] - lattice->middle[d]) * (middle[d] - lattice->middle[d]);
-    return squared <= lattice->largest_distance * lattice->largest_distance;
+        if (is_across(fill, d)) squared += (middle[d] - fill->middle[d]) * (middle[d] - fill->middle[d]);
+    return squared <= fill->largest_distance * fill->largest_distance;
 }
 
 /// Number of cells that can be used, counted no further than `enough`.
-static int64_t count_cells(const fill_lattice *lattice, int64_t enough)
+static int64_t count_cells(const region_fill *fill, int64_t enough)
 {
-    const double all = (double)lattice->num[0] * (double)lattice->num[1] * (double)lattice->num[2];
-    if (lattice->cylinder == SCREE_AXIS_NONE) return all > (double)enough ? enough : (int64_t)all;
+    const double all = (double)fill->num[0] * (double)fill->num[1] * (double)fill->num[2];
+    if (fill->cylinder == SCREE_AXIS_NONE) return all > (double)enough ? enough : (int64_t)all;
     int64_t num = 0;
-    if (lattice->largest_distance < 0) return 0;
-    for (int64_t k = 0; (double)k < all && num < enough; ++k) num += is_usable_cell(lattice, k);
+    if (fill->largest_distance < 0) return 0;
+    for (int64_t k = 0; (double)k < all && num < enough; ++k) num += is_usable_cell(fill, k);
     return num;
 }
 
-static scree_status make_lattice(const scree_simulation *s, const scree_particle_group_def *def,
-                                 const drawn_group *group, fill_lattice *lattice, scree_report *report)
+/// Cells that the group fills, the last one perhaps in part.
+static int64_t num_cells_of(const region_fill *fill, const drawn_group *group)
 {
-    const double diameter = 2 * s->particle_shapes[group->shape].properties.bounding_radius * group->largest_scale;
-    lattice->cell = diameter * def->spacing;
-    lattice->slack = 0.5 * (lattice->cell - diameter);
-    lattice->cylinder = def->region.cylinder;
+    const int64_t split = split_of(fill, group), in_one = split * split * split;
+    return (group->num + in_one - 1) / in_one;
+}
+
+static int64_t num_cells_needed(const region_fill *fill)
+{
+    int64_t num = 0;
+    for (int32_t m = 0; m < fill->num_members; ++m) num += num_cells_of(fill, fill->groups + fill->members[m]);
+    return num;
+}
+
+/// The lattice over the region, with cells as wide as the widest room that a member needs.
+static void make_lattice(const scree_scene *scene, region_fill *fill)
+{
+    const scree_region_def *region = &scene->particles[fill->members[0]].region;
     double narrowest = INFINITY;
+    fill->cylinder = region->cylinder;
+    for (int32_t m = 0; m < fill->num_members; ++m)
+        fill->cell =
+            fmax(fill->cell, fill->groups[fill->members[m]].diameter * scene->particles[fill->members[m]].spacing);
     for (int k = 0; k < 3; ++k)
-        if (is_across(lattice, k)) narrowest = fmin(narrowest, def->region.max[k] - def->region.min[k]);
+        if (is_across(fill, k)) narrowest = fmin(narrowest, region->max[k] - region->min[k]);
     for (int k = 0; k < 3; ++k)
     {
-        double extent = def->region.max[k] - def->region.min[k];
-        lattice->lower[k] = def->region.min[k];
-        lattice->middle[k] = 0.5 * (def->region.min[k] + def->region.max[k]);
-        if (is_across(lattice, k)) extent = narrowest;
-        lattice->num[k] = (int64_t)fmin(extent / lattice->cell * (1 + 1e-12), 1e6);
-        if (is_across(lattice, k))
-            lattice->lower[k] = lattice->middle[k] - 0.5 * (double)lattice->num[k] * lattice->cell;
+        double extent = region->max[k] - region->min[k];
+        fill->lower[k] = region->min[k];
+        fill->middle[k] = 0.5 * (region->min[k] + region->max[k]);
+        if (is_across(fill, k)) extent = narrowest;
+        fill->num[k] = (int64_t)fmin(extent / fill->cell * (1 + 1e-12), 1e6);
+        if (is_across(fill, k)) fill->lower[k] = fill->middle[k] - 0.5 * (double)fill->num[k] * fill->cell;
     }
-    // the particle anywhere in its room, which reaches farthest along the diagonal across the axis
-    lattice->largest_distance = 0.5 * narrowest - 0.5 * diameter - lattice->slack * sqrt(2.0);
-    const int64_t fits = count_cells(lattice, group->num);
-    if (fits >= group->num) return SCREE_OK;
+    // a particle anywhere in its cell, split or not: it reaches farthest along the diagonal across the axis
+    fill->largest_distance = INFINITY;
+    for (int32_t m = 0; m < fill->num_members; ++m)
+    {
+        drawn_group *group = fill->groups + fill->members[m];
+        const double room = group->diameter * scene->particles[fill->members[m]].spacing;
+        const double slack = 0.5 * (fill->cell - group->diameter);
+        fill->largest_distance =
+            fmin(fill->largest_distance, 0.5 * narrowest - 0.5 * group->diameter - slack * sqrt(2.0));
+        group->max_split = (int64_t)fmin(fill->cell / room * (1 + 1e-12), MAX_SPLIT);
+        fill->num_particles += group->num;
+    }
+}
+
+/// Says that the region is too small.
+static void tell_too_small(const scree_scene *scene, const region_fill *fill, int64_t num_cells, scree_report *report)
+{
+    char cells[128], names[6 * 64] = "";
+    snprintf(cells, sizeof cells, "cells of %g m, %lld x %lld x %lld%s", fill->cell, (long long)fill->num[0],
+             (long long)fill->num[1], (long long)fill->num[2],
+             fill->cylinder == SCREE_AXIS_NONE ? "" : ", those in the cylinder");
+    if (fill->num_members == 1)
+    {
+        const drawn_group *group = fill->groups + fill->members[0];
+        scree_report_add(
+            report,
+            "particles \"%s\": the region holds %lld particles of up to %g m (%s), but %lld are asked for; "
+            "make the region larger, for instance higher",
+            scene->particles[fill->members[0]].name, (long long)num_cells, group->diameter, cells,
+            (long long)group->num);
+        return;
+    }
+    for (int32_t m = 0; m < fill->num_members && m < MAX_NAMED; ++m)
+        snprintf(names + strlen(names), sizeof names - strlen(names), "%s\"%.50s\"",
+                 m == 0                       ? ""
+                 : m == fill->num_members - 1 ? " and "
+                                              : ", ",
+                 scene->particles[fill->members[m]].name);
+    if (fill->num_members > MAX_NAMED)
+        snprintf(names + strlen(names), sizeof names - strlen(names), " and %d more", fill->num_members - MAX_NAMED);
+    const double share = (double)num_cells / (double)num_cells_needed(fill);
     scree_report_add(report,
-                     "particles \"%s\": the region holds %lld particles of up to %g m (cells of %g m, %lld x %lld x "
-                     "%lld%s), but %lld are asked for; make the region larger, for instance higher",
-                     def->name, (long long)fits, diameter, lattice->cell, (long long)lattice->num[0],
-                     (long long)lattice->num[1], (long long)lattice->num[2],
-                     lattice->cylinder == SCREE_AXIS_NONE ? "" : ", those in the cylinder", (long long)group->num);
-    return SCREE_INVALID_INPUT;
+                     "particles %s are filled into one region together, which holds about %lld of the %lld that are "
+                     "asked for (%s); make the region larger, for instance higher",
+                     names, (long long)(share * (double)fill->num_particles), (long long)fill->num_particles, cells);
 }
 
 /// Mass and moments of particle i from shape, scale and density.
@@ -234,47 +308,129 @@ static void place_listed(scree_simulation *s, const scree_body_def *body, int64_
         scree_mat3_apply(rotation, scree_vec3_make(inertia.x * w.x, inertia.y * w.y, inertia.z * w.z));
 }
 
-/// Particle i of a filled group into cell k, jittered by the room that is left, turned at random.
-static void place_filled(scree_simulation *s, const scree_particle_group_def *def, const fill_lattice *lattice,
-                         int64_t k, uint64_t *state, int64_t i)
+/// Puts the next particle of group g to `middle`, jittered by the room that is left, turned at random.
+static void place_filled(scree_simulation *s, drawn_group *group, int32_t g, const double middle[3], double slack,
+                         uint64_t *state)
 {
     scree_particles *p = &s->particles;
+    const int64_t i = group->first + group->num_done++;
     double position[3];
-    cell_middle(lattice, k, position);
-    for (int d = 0; d < 3; ++d) position[d] += lattice->slack * (2 * random_unit(state) - 1);
+    for (int d = 0; d < 3; ++d) position[d] = middle[d] + slack * (2 * random_unit(state) - 1);
     p->position[i] = vec3_from(position);
     p->orientation[i] = random_orientation(state);
-    p->velocity[i] = vec3_from(def->velocity);
+    p->velocity[i] = vec3_from(s->scene->particles[g].velocity);
 }
 
-static scree_status place_group(scree_simulation *s, int32_t g, const drawn_group *group, int64_t first,
-                                scree_report *report)
+/// Which member gets which of the cells: (num_cells_needed). Every order is as likely (Fisher & Yates; Durstenfeld
+/// 1964). NULL: out of memory.
+static int32_t *deal_cells(const region_fill *fill, uint64_t *state)
 {
-    const scree_particle_group_def *def = s->scene->particles + g;
-    fill_lattice lattice = {0};
-    if (def->num_bodies == 0)
+    int64_t num = num_cells_needed(fill), k = 0;
+    int32_t *dealt = malloc((size_t)(num + 1) * sizeof *dealt);
+    if (dealt == NULL) return NULL;
+    for (int32_t m = 0; m < fill->num_members; ++m)
+        for (int64_t n = num_cells_of(fill, fill->groups + fill->members[m]); n > 0; --n) dealt[k++] = fill->members[m];
+    for (; fill->num_members > 1 && num > 1; --num)
     {
-        const scree_status status = make_lattice(s, def, group, &lattice, report);
-        if (status != SCREE_OK) return status;
+        const int64_t other = (int64_t)(random_bits(state) % (uint64_t)num);
+        const int32_t moved = dealt[num - 1];
+        dealt[num - 1] = dealt[other];
+        dealt[other] = moved;
     }
-    uint64_t state = (uint64_t)def->seed * 2 + 2;
+    return dealt;
+}
+
+/// Fills the members into their region. Cells are split for small particles no further than all need to fit: whole
+/// ones mix better.
+static scree_status fill_region(scree_simulation *s, region_fill *fill, scree_report *report)
+{
+    make_lattice(s->scene, fill);
+    const int64_t num_cells = count_cells(fill, fill->num_particles);
+    fill->max_split = 1;
+    while (num_cells_needed(fill) > num_cells && fill->max_split < MAX_SPLIT) ++fill->max_split;
+    if (num_cells_needed(fill) > num_cells)
+    {
+        tell_too_small(s->scene, fill, num_cells, report);
+        return SCREE_INVALID_INPUT;
+    }
+
+    uint64_t state = (uint64_t)s->scene->particles[fill->members[0]].seed * 2 + 2;
+    for (int32_t m = 1; m < fill->num_members; ++m)
+        state = random_bits(&state) ^ ((uint64_t)s->scene->particles[fill->members[m]].seed * 2 + 2);
+    int32_t *dealt = deal_cells(fill, &state);
+    if (dealt == NULL) return SCREE_OUT_OF_MEMORY;
+    const int64_t num_dealt = num_cells_needed(fill);
     int64_t cell = 0;
+    for (int64_t n = 0; n < num_dealt; ++n, ++cell)
+    {
+        while (!is_usable_cell(fill, cell)) ++cell;
+        drawn_group *group = fill->groups + dealt[n];
+        const int64_t split = split_of(fill, group);
+        const double slack = 0.5 * (fill->cell / (double)split - group->diameter);
+        for (int64_t k = 0; k < split * split * split && group->num_done < group->num; ++k)
+        {
+            double middle[3];
+            part_middle(fill, cell, split, k, middle);
+            place_filled(s, group, dealt[n], middle, slack, &state);
+        }
+    }
+    free(dealt);
+    return SCREE_OK;
+}
+
+/// What all particles of a group have, wherever they are.
+static void set_group(scree_simulation *s, int32_t g, const drawn_group *group)
+{
     for (int64_t k = 0; k < group->num; ++k)
     {
-        const int64_t i = first + k;
+        const int64_t i = group->first + k;
         s->particles.scale[i] = (scree_real)group->scale[k];
         s->particles.shape[i] = group->shape;
         s->particles.material[i] = group->material;
         s->particles.group[i] = g;
         set_inertia(s, i);
-        if (def->num_bodies > 0) place_listed(s, def->bodies + k, i);
-        else
-        {
-            while (!is_usable_cell(&lattice, cell)) ++cell;
-            place_filled(s, def, &lattice, cell++, &state, i);
-        }
     }
-    return SCREE_OK;
+}
+
+static bool have_same_region(const scree_region_def *a, const scree_region_def *b)
+{
+    for (int k = 0; k < 3; ++k)
+        if (a->min[k] != b->min[k] || a->max[k] != b->max[k]) return false;
+    return a->cylinder == b->cylinder;
+}
+
+/// Group g and those after it with the same region, to members; none if one before it has that region.
+static int32_t find_members(const scree_scene *scene, uint32_t g, int32_t *members)
+{
+    int32_t num = 0;
+    for (uint32_t k = 0; k < scene->num_particles; ++k)
+    {
+        const scree_particle_group_def *def = scene->particles + k;
+        if (def->num_bodies > 0 || !have_same_region(&def->region, &scene->particles[g].region)) continue;
+        if (k < g) return 0;
+        members[num++] = (int32_t)k;
+    }
+    return num;
+}
+
+/// Every region is tried, so that all that are too small are told at once. SCREE_INVALID_INPUT, SCREE_OUT_OF_MEMORY.
+static scree_status place_groups(scree_simulation *s, drawn_group *groups, scree_report *report)
+{
+    const scree_scene *scene = s->scene;
+    int32_t *members = malloc((scene->num_particles + 1) * sizeof *members);
+    scree_status status = members == NULL ? SCREE_OUT_OF_MEMORY : SCREE_OK;
+    for (uint32_t g = 0; g < scene->num_particles && status != SCREE_OUT_OF_MEMORY; ++g)
+    {
+        const scree_particle_group_def *def = scene->particles + g;
+        set_group(s, (int32_t)g, groups + g);
+        for (uint32_t k = 0; k < def->num_bodies; ++k) place_listed(s, def->bodies + k, groups[g].first + k);
+        region_fill fill = {.groups = groups, .members = members};
+        if (def->num_bodies == 0) fill.num_members = find_members(scene, g, members);
+        const scree_status filled = fill.num_members > 0 ? fill_region(s, &fill, report) : SCREE_OK;
+        if (filled != SCREE_OK) status = filled;
+    }
+    free(members);
+    return status;
 }
 
 scree_status scree_populate(scree_simulation *simulation, scree_report *report)
@@ -286,6 +442,9 @@ scree_status scree_populate(scree_simulation *simulation, scree_report *report)
     for (uint32_t g = 0; g < scene->num_particles && status == SCREE_OK; ++g)
     {
         status = draw_group(simulation, scene->particles + g, groups + g);
+        groups[g].first = num;
+        groups[g].diameter =
+            2 * simulation->particle_shapes[groups[g].shape].properties.bounding_radius * groups[g].largest_scale;
         num += groups[g].num;
         if (status == SCREE_OK && num > INT32_MAX / 2) status = SCREE_TOO_MANY;
         if (status == SCREE_TOO_MANY)
@@ -293,17 +452,8 @@ scree_status scree_populate(scree_simulation *simulation, scree_report *report)
                              scene->particles[g].name, INT32_MAX / 2);
     }
     if (status == SCREE_OK) status = scree_particles_create(&simulation->particles, num);
-
-    // every group is tried, so that all regions that are too small are told at once
-    int64_t first = 0;
-    scree_status placed = SCREE_OK;
-    for (uint32_t g = 0; g < scene->num_particles && status == SCREE_OK; ++g)
-    {
-        const scree_status one = place_group(simulation, (int32_t)g, groups + g, first, report);
-        if (one != SCREE_OK) placed = one;
-        first += groups[g].num;
-    }
+    if (status == SCREE_OK) status = place_groups(simulation, groups, report);
     for (uint32_t g = 0; groups != NULL && g < scene->num_particles; ++g) free(groups[g].scale);
     free(groups);
-    return status != SCREE_OK ? status : placed;
+    return status;
 }

@@ -338,13 +338,14 @@ static const scree_scene_key region_keys[] = {
      .meaning = "upper corner"},
     {.name = "cylinder",
      .default_text = "none",
-     .meaning = "x, y or z: only the cylinder in the box along this axis, through its middle, as wide as the box is "
-                "narrow"},
+     .meaning = "x, y or z: only the cylinder along this axis in the middle of the box, as wide as it is narrow"},
 };
 static const scree_scene_section region_section = {
     "particles[].region",
-    "Box, or cylinder, that a group of particles is filled into, on a lattice from the bottom up.", region_fields,
-    region_keys, COUNT(region_keys)};
+    "Box, or cylinder, to fill on a lattice from the bottom up. Groups with the same region, number for number, are "
+    "mixed: each cell has room for the largest particle of all and is given to one of them at random. Small particles "
+    "share cells with others of their group if not all fit otherwise.",
+    region_fields, region_keys, COUNT(region_keys)};
 
 static const cyaml_schema_field_t body_fields[] = {
     NUMBERS(scree_body_def, position, 3), NUMBERS(scree_body_def, orientation, 4),      NUMBER(scree_body_def, size),
@@ -422,7 +423,7 @@ static const scree_scene_key group_keys[] = {
      .default_text = "0",
      .min = 0,
      .max = MAX_INTEGER,
-     .meaning = "of sizes, orientations and jitter"},
+     .meaning = "of sizes, orientations, jitter, and with the seeds of the others of who is where in a shared region"},
     {.name = "velocity",
      .unit = "m/s",
      .default_text = "[0, 0, 0]",

@@ -45,7 +45,7 @@ static void test_refused(void)
     } cases[] = {
         {HEAD BALLS "      - {position: [0, 0, 0.01]}\n      - {position: [0.018, 0, 0.01]}\n" FLOOR,
          "particle 0 of \"balls\" at (0, 0, 0.01) starts 0.002 m inside particle 1 of \"balls\" at (0.018, 0, 0.01), "
-         "more than 0.05 of the smaller one's half width of 0.01 m; move one of them or the region of the particles"},
+         "more than 0.05 of the smaller one's half width of 0.01 m; move one of them"},
         {HEAD BALLS "      - {position: [0, 0, 0.01]}\n      - {position: [0, 0, 0.01]}\n" FLOOR,
          "particle 0 of \"balls\" at (0, 0, 0.01) has the centre of particle 1 of \"balls\" at (0, 0, 0.01); move one "
          "of "

@@ -375,8 +375,6 @@ static scree_status place_spheres(const search *s)
     return SCREE_OK;
 }
 
-static int64_t smaller(int64_t a, int64_t b) { return a < b ? a : b; }
-
 /// Overlaps of the pairs of meshes that may touch, class by class.
 static void find_overlaps(const search *s)
 {
@@ -400,7 +398,7 @@ static void find_overlaps(const search *s)
         overlaps.work_class = c;
         overlaps.num_lanes = num_lanes_of(s->narrow_phase, c);
         int64_t num_takers = (num + overlaps.num_at_once - 1) / overlaps.num_at_once;
-        num_takers = smaller(num_takers, smaller(b->pool.num_slices, num_at_once(s->narrow_phase, c)));
+        num_takers = scree_min_count(num_takers, scree_min_count(b->pool.num_slices, num_at_once(s->narrow_phase, c)));
         if (overlaps.options.separate_patches) scree_overlap_patches_launch_on(device, overlaps, num_takers);
         else scree_overlap_pairs_launch_on(device, overlaps, num_takers);
     }

@@ -53,6 +53,9 @@ SCREE_FN scree_real scree_abs(scree_real x)
 SCREE_FN scree_real scree_min(scree_real a, scree_real b) { return b < a ? b : a; }
 SCREE_FN scree_real scree_max(scree_real a, scree_real b) { return b > a ? b : a; }
 
+/// The smaller one of two counts.
+SCREE_FN int64_t scree_min_count(int64_t a, int64_t b) { return b < a ? b : a; }
+
 typedef struct scree_vec3
 {
     scree_real x, y, z;

@@ -12,6 +12,9 @@
 /// Depth of a contact that is allowed, over the half width of the smaller of the two that touch.
 #define MAX_INDENTATION 0.05
 
+/// For distances that must be safe in single precision.
+#define ROUNDED_DOWN 0.9999
+
 static const scree_shape_view *shape_of(const scree_simulation *s, int64_t body)
 {
     return s->shape_views + s->buffers->shape[body];
@@ -94,6 +97,12 @@ static bool have_common_centre(const scree_simulation *s, scree_candidate_pair p
         }
     }
     return false;
+}
+
+bool scree_is_in_clear_ball(const scree_clear_ball *clear, scree_vec3 centre, double radius)
+{
+    const double distance = (double)scree_vec3_length(scree_vec3_sub(centre, clear->centre));
+    return distance + radius < ROUNDED_DOWN * clear->radius;
 }
 
 double scree_depth_in_mesh(const scree_simulation *s, int64_t body, scree_vec3 point, double reach, scree_vec3 *normal)
@@ -203,6 +212,19 @@ static bool are_touching(const scree_simulation *s, int64_t i, int64_t j)
     return low < s->contacts.num_contacts && s->contacts.bodies[low].i == i && s->contacts.bodies[low].j == j;
 }
 
+/// Is particle i of the pair as a whole outside of mesh j, by what is known of a point outside: most others are near?
+/// What is learned of its own centre is kept.
+static bool is_outside_as_others(const scree_simulation *s, scree_candidate_pair pair, scree_clear_ball *clear)
+{
+    const scree_vec3 centre = s->buffers->pose[pair.i].position;
+    const double radius = (double)(shape_of(s, pair.i)->bounding_radius * s->buffers->pose[pair.i].scale);
+    if (scree_is_in_clear_ball(clear, centre, radius)) return true;
+    const double height = -scree_depth_in_mesh(s, pair.j, centre, 0, NULL);
+    if (!(height > 0 && height < INFINITY)) return false;
+    *clear = (scree_clear_ball){centre, height};
+    return scree_is_in_clear_ball(clear, centre, radius);
+}
+
 /// Particles inside the solid of a wall: far from its surface they are no candidates. Adds their number.
 static void check_solids(const scree_simulation *s, scree_report *report, int64_t *num)
 {
@@ -210,10 +232,11 @@ static void check_solids(const scree_simulation *s, scree_report *report, int64_
     for (int32_t w = 0; w < s->num_walls; ++w)
     {
         if (!s->walls[w].is_present) continue;
+        scree_clear_ball clear = {0};
         for (int64_t i = 0; i < num_particles; ++i)
         {
             const scree_candidate_pair pair = {(int32_t)i, (int32_t)(num_particles + w)};
-            if (!(depth_inside(s, pair.i, pair.j) > 0)) continue;
+            if (is_outside_as_others(s, pair, &clear) || !(depth_inside(s, pair.i, pair.j) > 0)) continue;
             // where all vertices are inside, an edge may still come out
             if (shape_of(s, i)->kind == SCREE_KIND_MESH && are_touching(s, pair.i, pair.j)) continue;
             if (++*num <= SCREE_MAX_TOLD) tell_enclosed(s, pair, report);

@@ -10,8 +10,6 @@
 
 #include <string.h>
 
-static int64_t smaller(int64_t a, int64_t b) { return a < b ? a : b; }
-
 static void set_numbers(scree_simulation *s, int64_t num_contacts, int64_t num_old)
 {
     s->contacts.num_contacts = num_contacts;
@@ -80,7 +78,8 @@ scree_halt scree_play_step(scree_simulation *simulation)
     scree_halt halt = SCREE_HALT_START;
     if (is_steady(s))
     {
-        b->max_recorded = smaller(scree_contact_list_room(&s->contacts), scree_contact_list_room(&s->old_contacts));
+        b->max_recorded =
+            scree_min_count(scree_contact_list_room(&s->contacts), scree_contact_list_room(&s->old_contacts));
         const int64_t num_old = s->contacts.num_contacts;
         const int parity = (int)(s->step & 1);
         scree_contact_list_pass_on(&s->contacts, &s->old_contacts);

@@ -28,6 +28,17 @@ void scree_tell_more(scree_report *report, int64_t num, const char *what);
 /// Of a particle, or of wall `body` - num_particles.
 scree_body_text scree_describe_body(const scree_simulation *simulation, int64_t body);
 
+/// A ball that no surface of a mesh comes into: what is true of its centre is true of all points in it, which saves
+/// looking for the surface again.
+typedef struct scree_clear_ball
+{
+    scree_vec3 centre;
+    double radius; ///< [m] distance of the surface; 0: nothing is known
+} scree_clear_ball;
+
+/// Is another ball inside?
+bool scree_is_in_clear_ball(const scree_clear_ball *clear, scree_vec3 centre, double radius);
+
 /// How far a point is below the surface of the mesh of a body [m]; negative outside; -INFINITY farther than `reach`
 /// from its box, and of a body without a mesh. *normal is that of the nearest surface, outwards; NULL: not asked for.
 double scree_depth_in_mesh(const scree_simulation *simulation, int64_t body, scree_vec3 point, double reach,

@@ -91,15 +91,19 @@ static bool is_in_void(const scree_shape_view *shape, const int8_t *voids, scree
     return fabs(angle) > 2 * 3.141592653589793;
 }
 
-/// Is a point in a void of the wall, or in its solid, where other checks find it?
-static bool is_held(const scree_simulation *s, int32_t w, const int8_t *voids, scree_vec3 point)
+/// Is a point in a void of the wall, or in its solid, where other checks find it? The answer is true of all points of
+/// the ball *clear.
+static bool is_held(const scree_simulation *s, int32_t w, const int8_t *voids, scree_vec3 point,
+                    scree_clear_ball *clear)
 {
     const scree_shape_view *shape = s->shape_views + s->num_shapes + s->walls[w].shape;
     const scree_pose pose = s->walls[w].pose;
     const scree_vec3 p =
         scree_mat3_apply_transposed(scree_mat3_from_quat(pose.orientation), scree_vec3_sub(point, pose.position));
-    if (scree_box_distance_squared(shape->box, p) > 0) return false;
+    *clear = (scree_clear_ball){point, sqrt((double)scree_box_distance_squared(shape->box, p))};
+    if (clear->radius > 0) return false;
     const scree_closest_point closest = scree_closest_on_mesh(shape, p);
+    clear->radius = sqrt((double)closest.squared);
     if (voids[closest.triangle] != 0 || (double)scree_approach_of(shape, &closest).height < 0) return true;
     return is_in_void(shape, voids, p);
 }
@@ -115,8 +119,14 @@ scree_status scree_find_outside_of_vessels(const scree_simulation *s, int32_t *v
         int8_t *voids = find_voids(s->shape_views + s->num_shapes + s->walls[w].shape, &is_out_of_memory);
         if (is_out_of_memory) return SCREE_OUT_OF_MEMORY;
         if (voids == NULL) continue;
+        scree_clear_ball clear = {0};
+        bool is_in = false;
         for (int64_t i = 0; i < num_particles; ++i)
-            is_outside[i] = (*vessel < 0 || is_outside[i]) && !is_held(s, w, voids, s->particles.position[i]);
+        {
+            const scree_vec3 point = s->particles.position[i];
+            if (!scree_is_in_clear_ball(&clear, point, 0)) is_in = is_held(s, w, voids, point, &clear);
+            is_outside[i] = (*vessel < 0 || is_outside[i]) && !is_in;
+        }
         free(voids);
         *vessel = w;
     }

@@ -123,7 +123,9 @@ function(scree_add_scripts kind)
         get_filename_component(base ${script} NAME_WE)
         set(name ${kind}_${base})
         if(script MATCHES "\\.py$")
-            add_test(NAME ${name} COMMAND ${python} -B -m pytest -q -p no:cacheprovider ${script})
+            # pytest empties this folder at its start
+            add_test(NAME ${name} COMMAND ${python} -B -m pytest -q -p no:cacheprovider
+                --basetemp=${CMAKE_BINARY_DIR}/scratch/${name} ${script})
         else()
             add_test(NAME ${name} COMMAND bash ${script})
         endif()

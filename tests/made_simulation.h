@@ -1,6 +1,6 @@
 /// \file made_simulation.h
 /// A simulation made by hand, without the step: two tetrahedra and a box, two walls, contacts between them. For tests
-/// of what is written and read. Needs _XOPEN_SOURCE 700 before the first include.
+/// of what is written and read.
 #ifndef SCREE_MADE_SIMULATION_H
 #define SCREE_MADE_SIMULATION_H
 
@@ -8,10 +8,7 @@
 
 #include "dynamics/state.h"
 
-#include <ftw.h>
 #include <stdlib.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 static const scree_vec3 made_tetrahedron_vertices[4] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 static const scree_triangle made_tetrahedron_triangles[4] = {{{0, 2, 1}}, {{0, 1, 3}}, {{0, 3, 2}}, {{1, 2, 3}}};
@@ -169,43 +166,6 @@ static inline void made_simulation_destroy(made_simulation *made)
     scree_particles_destroy(&made->simulation.particles);
     scree_wall_loads_destroy(&made->simulation.wall_loads);
     scree_contact_list_destroy(&made->simulation.contacts);
-}
-
-/// The folder of this program's files; made with the first call.
-static inline const char *made_base_folder(void)
-{
-    static char path[256];
-    if (path[0] != '\0') return path;
-    const char *base = getenv("TMPDIR");
-    // files in memory spare the waiting for the disk
-    if (base == NULL) base = access("/dev/shm", W_OK) == 0 ? "/dev/shm" : "/tmp";
-    snprintf(path, sizeof path, "%.200s/scree_test_XXXXXX", base);
-    SCREE_CHECK(mkdtemp(path) != NULL);
-    return path;
-}
-
-/// A fresh folder. The text is overwritten by the next call.
-static inline const char *made_folder(void)
-{
-    static char path[300];
-    static int num_folders = 0;
-    snprintf(path, sizeof path, "%s/%d", made_base_folder(), num_folders++);
-    SCREE_CHECK(mkdir(path, 0777) == 0);
-    return path;
-}
-
-static inline int made_remove_one(const char *path, const struct stat *info, int kind, struct FTW *place)
-{
-    (void)info;
-    (void)kind;
-    (void)place;
-    return remove(path);
-}
-
-/// Removes all that the program wrote.
-static inline void made_remove_folders(void)
-{
-    SCREE_CHECK(nftw(made_base_folder(), made_remove_one, 16, FTW_DEPTH | FTW_PHYS) == 0);
 }
 
 #endif

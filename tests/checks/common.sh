@@ -3,7 +3,10 @@ set -uo pipefail
 root=${SCREE_SOURCE_DIR:-$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)}
 build=${SCREE_BUILD_DIR:-$root/build/release}
 cd "$root" || exit 1
-scratch=$(mktemp -d)
+# what a killed run has left goes first
+scratch=$build/scratch/$(basename "$0" .sh)
+rm -rf "$scratch"
+mkdir -p "$scratch" || exit 1
 trap 'rm -rf "$scratch"' EXIT
 
 # Sources of the named kinds (file name patterns), wherever scree keeps sources.

@@ -2,6 +2,7 @@
 // after hundreds of steps; and a run that changes sides at its checkpoints.
 #define _XOPEN_SOURCE 700
 #include "device_run.cuh"
+#include "test_folder.h"
 
 extern "C"
 {
@@ -196,9 +197,7 @@ static void test_patches() { check_scene(patches(), 128, 2); }
 static void test_sides_change_at_checkpoints()
 {
     const std::string text = mixed();
-    char folder[] = "/tmp/scree_test_step_XXXXXX";
-    SCREE_CHECK(mkdtemp(folder) != nullptr);
-    const std::string path = std::string(folder) + "/checkpoint.h5";
+    const std::string path = std::string(scree_test_folder()) + "/checkpoint.h5";
     scene_run unbroken, run;
     scene_run_start(&unbroken, text.c_str());
     if (unbroken.simulation == nullptr) return;
@@ -220,7 +219,6 @@ static void test_sides_change_at_checkpoints()
     scene_run_end(&run);
     scene_run_end(&unbroken);
     scree_device_close(device);
-    SCREE_CHECK(remove(path.c_str()) == 0 && remove(folder) == 0);
 }
 
 #if defined(CUDA_ON_CPU) && !defined(CUDA_ON_CPU_RACES)

@@ -3,6 +3,7 @@
 
 #include "io/run_folder.h"
 #include "made_simulation.h"
+#include "test_folder.h"
 
 #include <omp.h>
 
@@ -137,8 +138,8 @@ static void test_same_bits(void)
     SCREE_CHECK(hash_with_threads(7) == one);
 
     // stopped in the middle, while it swings on both legs, and gone on from the file
-    char path[400];
-    snprintf(path, sizeof path, "%s/checkpoint.h5", made_folder());
+    char path[512];
+    snprintf(path, sizeof path, "%s/checkpoint.h5", scree_test_folder());
     scene_run first, second;
     start(&first, true);
     scene_run_until(&first, 0.03);
@@ -153,7 +154,6 @@ static void test_same_bits(void)
     }
     scene_run_end(&first);
     scene_run_end(&second);
-    made_remove_folders();
 }
 
 int main(void)

@@ -1,6 +1,7 @@
 // True spheres: free fall, Hertz impact, bounces, and a ball on a plane cut into many triangles.
 #include "polyhedra/import.h"
 #include "scene_run.h"
+#include "test_folder.h"
 #include "voxel_mesh.h"
 
 #include <unistd.h>
@@ -217,15 +218,12 @@ static void test_seams_are_not_felt(void)
     scree_mesh mesh = scree_voxel_mesh(&voxels);
     for (int32_t v = 0; v < mesh.num_vertices; ++v)
         mesh.vertices[v] = scree_vec3_scale(mesh.vertices[v], (scree_real)0.03);
-    char folder[] = "/tmp/scree_test_XXXXXX", path[64], many[128];
-    SCREE_CHECK(mkdtemp(folder) != NULL);
-    snprintf(path, sizeof path, "%s/seams.obj", folder);
+    char path[512], many[600];
+    snprintf(path, sizeof path, "%s/seams.obj", scree_test_folder());
     SCREE_CHECK_INT(scree_mesh_export_obj(&mesh, path, NULL), SCREE_OK);
     scree_mesh_destroy(&mesh);
     snprintf(many, sizeof many, "source: file, file: %s", path);
     const ball_state seams = roll(many);
-    unlink(path);
-    rmdir(folder);
     const ball_state box = roll("source: box, size: [0.9, 0.36, 0.03], offset: [0.45, 0.18, 0.015]");
     const double apart = (double)scree_vec3_length(scree_vec3_sub(seams.position, box.position));
     const double faster = (double)scree_vec3_length(scree_vec3_sub(seams.velocity, box.velocity));

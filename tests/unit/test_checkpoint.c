@@ -3,6 +3,7 @@
 #define _XOPEN_SOURCE 700
 #include "made_simulation.h"
 #include "scene_run.h"
+#include "test_folder.h"
 
 #include "dynamics/step_buffers.h"
 #include "io/run_folder.h"
@@ -69,7 +70,7 @@ static uint64_t hash_all(const scree_simulation *simulation)
 /// The scene stopped after `stop` steps, made anew, loaded and run to the end; against the unbroken run's hashes.
 static void check_restart(int64_t stop, const uint64_t *hashes, int64_t num_steps)
 {
-    const char *path = path_in(made_folder(), "checkpoint.h5");
+    const char *path = path_in(scree_test_folder(), "checkpoint.h5");
     scene_run first, second;
     scene_run_start(&first, scene_text);
     scene_run_until(&first, (double)stop * 5e-5);
@@ -125,7 +126,7 @@ static void test_equal_states_are_equal_files(void)
     char paths[2][512];
     char *texts[2];
     size_t sizes[2];
-    const char *folder = made_folder();
+    const char *folder = scree_test_folder();
     for (int k = 0; k < 2; ++k)
     {
         snprintf(paths[k], sizeof paths[k], "%s/%d.h5", folder, k);
@@ -211,7 +212,7 @@ static void make_loadable(made_simulation *made)
 
 static void test_another_scene_is_refused(void)
 {
-    const char *path = path_in(made_folder(), "checkpoint.h5");
+    const char *path = path_in(scree_test_folder(), "checkpoint.h5");
     write_checkpoint(path);
     for (size_t k = 0; k < sizeof refusals / sizeof refusals[0]; ++k)
     {
@@ -227,7 +228,7 @@ static void test_another_scene_is_refused(void)
 static void test_end_and_output_may_change(void)
 {
     char path[512], text[sizeof scene_text + 64];
-    snprintf(path, sizeof path, "%s/checkpoint.h5", made_folder());
+    snprintf(path, sizeof path, "%s/checkpoint.h5", scree_test_folder());
     scene_run first, second;
     scene_run_start(&first, scene_text);
     scene_run_until(&first, 0.001);
@@ -268,7 +269,7 @@ static void take_out(const char *path, const char *name)
 
 static void test_changed_contents_are_refused(void)
 {
-    const char *path = path_in(made_folder(), "checkpoint.h5");
+    const char *path = path_in(scree_test_folder(), "checkpoint.h5");
     made_simulation made;
     made_simulation_create(&made);
     int num_fields;
@@ -306,7 +307,7 @@ static void test_changed_contents_are_refused(void)
 /// A file that holds such a state cannot have come from a healthy run, even if its hashes are right.
 static void test_numbers_out_of_range_are_refused(void)
 {
-    const char *path = path_in(made_folder(), "checkpoint.h5");
+    const char *path = path_in(scree_test_folder(), "checkpoint.h5");
     made_simulation sick, made;
     made_simulation_create(&sick);
     made_simulation_create(&made);
@@ -330,7 +331,7 @@ static void test_numbers_out_of_range_are_refused(void)
 static void test_other_files_are_refused(void)
 {
     char path[512];
-    snprintf(path, sizeof path, "%s/checkpoint.h5", made_folder());
+    snprintf(path, sizeof path, "%s/checkpoint.h5", scree_test_folder());
     made_simulation made;
     made_simulation_create(&made);
     check_refused(&made, path, SCREE_NOT_FOUND, "there is no checkpoint");
@@ -347,7 +348,7 @@ static void test_other_files_are_refused(void)
 static void test_short_files_are_refused(void)
 {
     char path[512];
-    snprintf(path, sizeof path, "%s/checkpoint.h5", made_folder());
+    snprintf(path, sizeof path, "%s/checkpoint.h5", scree_test_folder());
     write_checkpoint(path);
     made_simulation made, other;
     make_loadable(&made);
@@ -377,7 +378,7 @@ static void test_short_files_are_refused(void)
 static void test_random_damage_is_never_half_loaded(void)
 {
     char path[512];
-    snprintf(path, sizeof path, "%s/checkpoint.h5", made_folder());
+    snprintf(path, sizeof path, "%s/checkpoint.h5", scree_test_folder());
     write_checkpoint(path);
     made_simulation original;
     make_loadable(&original);
@@ -427,7 +428,7 @@ static void save_until_killed(const char *path)
 static void test_a_kill_keeps_the_checkpoint_before(void)
 {
     char path[512];
-    snprintf(path, sizeof path, "%s/checkpoint.h5", made_folder());
+    snprintf(path, sizeof path, "%s/checkpoint.h5", scree_test_folder());
     write_checkpoint(path);
     uint64_t random = 3;
     int num_new = 0;
@@ -477,7 +478,7 @@ static int save_beyond_limit(const char *path)
 static void test_a_full_disk_keeps_the_checkpoint_before(void)
 {
     char path[512], temporary[520];
-    snprintf(path, sizeof path, "%s/checkpoint.h5", made_folder());
+    snprintf(path, sizeof path, "%s/checkpoint.h5", scree_test_folder());
     snprintf(temporary, sizeof temporary, "%s.tmp", path);
     write_checkpoint(path);
     static const size_t limits[] = {1, 500, 3000, 20000, 70000, 80000, 90000};
@@ -521,6 +522,5 @@ int main(void)
     SCREE_RUN(test_random_damage_is_never_half_loaded);
     SCREE_RUN(test_a_kill_keeps_the_checkpoint_before);
     SCREE_RUN(test_a_full_disk_keeps_the_checkpoint_before);
-    made_remove_folders();
     return SCREE_TEST_END();
 }

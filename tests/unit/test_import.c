@@ -4,13 +4,14 @@
 #include "polyhedra/generate.h"
 #include "polyhedra/import.h"
 #include "polyhedra/mass_properties.h"
+#include "test_folder.h"
 
 #include <dirent.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-static char folder[64];
-static char path[384];
+static char folder[400];
+static char path[800];
 
 /// Path of a file in the folder of this test.
 static const char *in_folder(const char *name)
@@ -330,19 +331,9 @@ static void failed_exports_leave_nothing_behind(void)
     scree_mesh_destroy(&mesh);
 }
 
-static void clean_up(void)
-{
-    DIR *entries = opendir(folder);
-    for (struct dirent *entry; entries != NULL && (entry = readdir(entries)) != NULL;)
-        if (entry->d_name[0] != '.' && remove(in_folder(entry->d_name)) != 0) perror(path);
-    if (entries != NULL) closedir(entries);
-    rmdir(folder);
-}
-
 int main(void)
 {
-    snprintf(folder, sizeof folder, "/tmp/scree_import_XXXXXX");
-    if (mkdtemp(folder) == NULL) return EXIT_FAILURE;
+    snprintf(folder, sizeof folder, "%s", scree_test_folder());
     SCREE_RUN(quads_are_cut_into_triangles);
     SCREE_RUN(concave_polygons_are_cut_inside);
     SCREE_RUN(normals_groups_and_materials_do_not_open_the_surface);
@@ -355,6 +346,5 @@ int main(void)
     SCREE_RUN(bad_meshes_are_refused_with_the_place);
     SCREE_RUN(damaged_files_do_no_harm);
     SCREE_RUN(failed_exports_leave_nothing_behind);
-    clean_up();
     return SCREE_TEST_END();
 }

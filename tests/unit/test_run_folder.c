@@ -2,6 +2,7 @@
 // moment leaves them readable. Everything is read back with plain HDF5 and C, not with the code that wrote it.
 #define _XOPEN_SOURCE 700
 #include "made_simulation.h"
+#include "test_folder.h"
 
 #include "scree/io.h"
 
@@ -176,7 +177,7 @@ static bool is_same_file(const char *first, const char *second, const char *name
 static void test_series_has_a_header_and_a_row_per_time(void)
 {
     char folder[400];
-    write_run(made_folder(), "run", 3, folder);
+    write_run(scree_test_folder(), "run", 3, folder);
     size_t size;
     char *text = read_text(in_folder(folder, "series.csv"), &size);
     SCREE_CHECK(text != NULL);
@@ -200,7 +201,7 @@ static void test_series_has_a_header_and_a_row_per_time(void)
 /// Steps 0 .. 9 in one go, against 0 .. 7, a partial line as a kill leaves it, and a restart from step 5.
 static void test_series_after_a_restart_is_the_unbroken_one(void)
 {
-    const char *base = made_folder();
+    const char *base = scree_test_folder();
     char whole[400], broken[400];
     write_run(base, "whole", 9, whole);
     write_run(base, "broken", 7, broken);
@@ -267,7 +268,7 @@ static void check_particle_frame(const char *path, made_simulation *made, int64_
 static void test_particle_frames_hold_the_placed_surfaces(void)
 {
     char folder[400];
-    write_run(made_folder(), "run", 9, folder);
+    write_run(scree_test_folder(), "run", 9, folder);
     made_simulation made;
     made_simulation_create(&made);
     const char *path = in_folder(folder, "frames.vtkhdf");
@@ -298,7 +299,7 @@ static void test_particle_frames_hold_the_placed_surfaces(void)
 static void test_walls_are_written_when_they_change(void)
 {
     char folder[400];
-    write_run(made_folder(), "run", 9, folder);
+    write_run(scree_test_folder(), "run", 9, folder);
     const char *path = in_folder(folder, "walls.vtkhdf");
     SCREE_CHECK_INT(read_num_steps(path), 10);
     int64_t num;
@@ -354,7 +355,7 @@ static void check_contact_frame(const char *path, made_simulation *made, int64_t
 static void test_contact_frames_hold_the_contacts(void)
 {
     char folder[400];
-    write_run(made_folder(), "run", 9, folder);
+    write_run(scree_test_folder(), "run", 9, folder);
     made_simulation made;
     made_simulation_create(&made);
     const char *path = in_folder(folder, "contacts.vtkhdf");
@@ -368,7 +369,7 @@ static void test_contact_frames_hold_the_contacts(void)
 static void test_files_grow_beyond_what_was_expected(void)
 {
     char folder[400];
-    write_run(made_folder(), "run", 60, folder);
+    write_run(scree_test_folder(), "run", 60, folder);
     made_simulation made;
     made_simulation_create(&made);
     SCREE_CHECK_INT(read_num_steps(in_folder(folder, "frames.vtkhdf")), 61);
@@ -385,7 +386,7 @@ static void test_files_grow_beyond_what_was_expected(void)
 
 static void test_frames_after_a_restart_are_the_unbroken_ones(void)
 {
-    const char *base = made_folder();
+    const char *base = scree_test_folder();
     char broken[400];
     write_run(base, "broken", 7, broken);
     made_simulation made;
@@ -413,7 +414,7 @@ static void test_a_step_appears_in_one_place(void)
 {
     static const char *const names[] = {"frames.vtkhdf", "walls.vtkhdf", "contacts.vtkhdf"};
     char folder[400];
-    snprintf(folder, sizeof folder, "%s/run", made_folder());
+    snprintf(folder, sizeof folder, "%s/run", scree_test_folder());
     made_simulation made;
     made_simulation_create(&made);
     scree_run_folder *run = open_folder(folder, &made, false, false);
@@ -500,7 +501,7 @@ static int64_t killed_run(const char *folder, bool from_start, long microseconds
 static void test_a_killed_run_leaves_readable_files(void)
 {
     char folder[400];
-    snprintf(folder, sizeof folder, "%s/run", made_folder());
+    snprintf(folder, sizeof folder, "%s/run", scree_test_folder());
     made_simulation made;
     made_simulation_create(&made);
     uint64_t random = 11;
@@ -568,7 +569,7 @@ static int write_until_full(const char *path)
 static void test_a_full_disk_is_told_and_keeps_the_frames(void)
 {
     char folder[400];
-    snprintf(folder, sizeof folder, "%s/run", made_folder());
+    snprintf(folder, sizeof folder, "%s/run", scree_test_folder());
     SCREE_CHECK_INT(in_limited_child(write_until_full, folder, 100000), 0);
     made_simulation made;
     made_simulation_create(&made);
@@ -603,7 +604,7 @@ static int write_rows_until_full(const char *path)
 static void test_a_row_is_written_whole_or_not(void)
 {
     char folder[400];
-    snprintf(folder, sizeof folder, "%s/run", made_folder());
+    snprintf(folder, sizeof folder, "%s/run", scree_test_folder());
     SCREE_CHECK_INT(in_limited_child(write_rows_until_full, folder, 5000), 0);
     size_t size = 0;
     char *text = read_text(in_folder(folder, "series.csv"), &size);
@@ -625,7 +626,7 @@ static scree_status try_open(const char *path, const made_simulation *made, bool
 static void test_an_old_run_is_guarded(void)
 {
     char folder[400];
-    write_run(made_folder(), "below/run", 2, folder);
+    write_run(scree_test_folder(), "below/run", 2, folder);
     made_simulation made;
     made_simulation_create(&made);
     scree_report report = {0};
@@ -658,7 +659,7 @@ static int open_while_open(const char *path)
 static void test_two_runs_do_not_share_a_folder(void)
 {
     char folder[400];
-    snprintf(folder, sizeof folder, "%s/run", made_folder());
+    snprintf(folder, sizeof folder, "%s/run", scree_test_folder());
     made_simulation made;
     made_simulation_create(&made);
     scree_run_folder *run = open_folder(folder, &made, false, false);
@@ -674,7 +675,7 @@ static void test_two_runs_do_not_share_a_folder(void)
 static void test_summary_has_null_where_there_is_no_number(void)
 {
     char folder[400];
-    snprintf(folder, sizeof folder, "%s/run", made_folder());
+    snprintf(folder, sizeof folder, "%s/run", scree_test_folder());
     made_simulation made;
     made_simulation_create(&made);
     char name[] = "a \"b\" \\ \t\xff";
@@ -718,6 +719,5 @@ int main(void)
     SCREE_RUN(test_an_old_run_is_guarded);
     SCREE_RUN(test_two_runs_do_not_share_a_folder);
     SCREE_RUN(test_summary_has_null_where_there_is_no_number);
-    made_remove_folders();
     return SCREE_TEST_END();
 }

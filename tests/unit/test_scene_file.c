@@ -4,7 +4,9 @@
 #include "io/nearest_name.h"
 #include "io/scene_schema.h"
 #include "scree/scene.h"
+#include "test_folder.h"
 
+#include <fcntl.h>
 #include <locale.h>
 #include <stdlib.h>
 #include <unistd.h>
@@ -640,12 +642,14 @@ static void check_file(const char *path, scree_status expected, const char *mess
 
 static void test_files(void)
 {
-    char path[] = "/tmp/scree_scene_XXXXXX";
-    const int descriptor = mkstemp(path);
+    const char *folder = scree_test_folder();
+    char path[512];
+    snprintf(path, sizeof path, "%s/scene.yaml", folder);
+    const int descriptor = open(path, O_RDWR | O_CREAT | O_EXCL, 0666);
     SCREE_CHECK(descriptor >= 0);
     if (descriptor < 0) return;
     check_file(path, SCREE_INVALID_INPUT, "there is nothing in it");
-    check_file("/tmp", SCREE_READ_FAILED, "/tmp: this is a folder");
+    check_file(folder, SCREE_READ_FAILED, ": this is a folder");
     check_file("/no/such/scene.yaml", SCREE_NOT_FOUND, "/no/such/scene.yaml: there is no such file");
     check_file("", SCREE_NOT_FOUND, "there is no such file");
 
@@ -660,10 +664,9 @@ static void test_files(void)
     check_file(path, SCREE_OK, "");
     scree_scene_file file;
     SCREE_CHECK_INT(scree_scene_read(&file, path, NULL, 0, NULL), SCREE_OK);
-    SCREE_CHECK(file.folder != NULL && strcmp(file.folder, "/tmp") == 0);
+    SCREE_CHECK(file.folder != NULL && strcmp(file.folder, folder) == 0);
     scree_scene_close(&file);
     close(descriptor);
-    unlink(path);
 }
 
 /// Each table agrees with the schema beside it, and its defaults are what it allows.

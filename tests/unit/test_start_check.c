@@ -3,6 +3,7 @@
 #include "scree/simulation.h"
 
 #include "harness.h"
+#include "test_folder.h"
 
 #include <stdlib.h>
 #include <unistd.h>
@@ -310,9 +311,8 @@ static void test_outside_of_a_closed_drum(void)
 /// is nearest to a ball in the void is one that faces outwards.
 static void test_island_in_a_vessel(void)
 {
-    char folder[] = "/tmp/scree_test_XXXXXX", path[64], text[2000];
-    SCREE_CHECK(mkdtemp(folder) != NULL);
-    snprintf(path, sizeof path, "%s/island.obj", folder);
+    char path[512], text[2000];
+    snprintf(path, sizeof path, "%s/island.obj", scree_test_folder());
     FILE *file = fopen(path, "w");
     if (file == NULL) exit(EXIT_FAILURE);
     const double half[3] = {0.5, 0.45, 0.1};
@@ -342,8 +342,6 @@ static void test_island_in_a_vessel(void)
         SCREE_CHECK((strstr(messages, "outside of the closed wall \"room\"") != NULL) == (k == 1));
         free(messages);
     }
-    unlink(path);
-    rmdir(folder);
 }
 
 static void test_motions_that_tear_walls_apart(void)

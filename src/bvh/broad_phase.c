@@ -16,9 +16,11 @@ enum
 
 struct scree_broad_phase_buffers
 {
+    scree_scratch scratch;   ///< unless it is borrowed
     scree_sort_buffers sort; ///< keys of pairs
-    int64_t *num_keys;       ///< counts the pairs of a search
-    int32_t *first_as_j;     ///< (max_bodies + 1)
+    int64_t max_keys;
+    int64_t *num_keys;   ///< counts the pairs of a search
+    int32_t *first_as_j; ///< (max_bodies + 1)
     int64_t max_pairs;
     int64_t max_bodies;
     int64_t num_bodies; ///< of the last search
@@ -30,7 +32,7 @@ void scree_broad_phase_destroy(scree_broad_phase *broad_phase)
     scree_lbvh_destroy(&broad_phase->tree);
     if (broad_phase->buffers != NULL)
     {
-        scree_sort_destroy(&broad_phase->buffers->sort);
+        scree_scratch_destroy(&broad_phase->buffers->scratch);
         scree_device_free(device, broad_phase->buffers->num_keys);
         scree_device_free(device, broad_phase->own_begin);
         scree_device_free(device, broad_phase->buffers->first_as_j);
@@ -39,18 +41,23 @@ void scree_broad_phase_destroy(scree_broad_phase *broad_phase)
     scree_device_free(device, broad_phase->pairs);
     scree_device_free(device, broad_phase->row_begin);
     scree_device_free(device, broad_phase->row_pairs);
-    *broad_phase = (scree_broad_phase){.device = device};
+    *broad_phase = (scree_broad_phase){.device = device, .scratch = broad_phase->scratch};
 }
 
-/// What belongs to the first search.
+/// What belongs to the first search, and memory of this one.
 static scree_status start(scree_broad_phase *broad_phase)
 {
     if (broad_phase->buffers == NULL) broad_phase->buffers = calloc(1, sizeof *broad_phase->buffers);
     struct scree_broad_phase_buffers *b = broad_phase->buffers;
     if (b == NULL) return SCREE_OUT_OF_MEMORY;
-    broad_phase->tree.device = b->sort.device = broad_phase->device;
-    if (b->num_keys == NULL) b->num_keys = scree_device_alloc(broad_phase->device, 1, sizeof *b->num_keys);
-    return b->num_keys != NULL ? SCREE_OK : SCREE_OUT_OF_MEMORY;
+    scree_device *device = broad_phase->device;
+    if (b->num_keys == NULL) b->num_keys = scree_device_alloc(device, 1, sizeof *b->num_keys);
+    if (b->num_keys == NULL) return SCREE_OUT_OF_MEMORY;
+    scree_scratch *scratch = broad_phase->scratch != NULL ? broad_phase->scratch : &b->scratch;
+    b->scratch.device = broad_phase->tree.device = device;
+    broad_phase->tree.scratch = scratch;
+    b->sort = (scree_sort_buffers){.device = device, .scratch = scratch};
+    return scratch == &b->scratch ? scree_scratch_begin(scratch, 0) : SCREE_OK;
 }
 
 /// Room for arrays of one entry per body.
@@ -172,6 +179,7 @@ scree_status scree_broad_phase_find(scree_broad_phase *broad_phase, const scree_
     if (status == SCREE_OK) status = scree_lbvh_build(&broad_phase->tree, input->boxes, input->num_particles);
 
     struct scree_broad_phase_buffers *b = broad_phase->buffers;
+    if (status == SCREE_OK && b->max_keys > 0) status = scree_sort_reserve(&b->sort, b->max_keys, false);
 
     // a list that was too short has still counted all pairs, so the second try has room
     int64_t num_pairs = 0;
@@ -180,8 +188,9 @@ scree_status scree_broad_phase_find(scree_broad_phase *broad_phase, const scree_
         num_pairs = find_keys(broad_phase, input);
         is_complete = num_pairs <= b->sort.max_items;
         if (num_pairs > INT32_MAX) status = SCREE_TOO_MANY;
-        else if (!is_complete) status = scree_sort_reserve(&b->sort, scree_buffer_grown(num_pairs), false);
+        else if (!is_complete) status = scree_sort_reserve(&b->sort, num_pairs + num_pairs / 16 + 16, false);
     }
+    if (status == SCREE_OK) b->max_keys = b->sort.max_items;
     if (status == SCREE_OK) status = reserve_pairs(broad_phase, num_pairs);
     if (status != SCREE_OK) return status;
     scree_sort(&b->sort, num_pairs, 0);

@@ -34,7 +34,8 @@ typedef struct scree_broad_phase_input
 /// Owns the particle tree, the pairs and all scratch. Start from {0}, or from {.device = ...} for a search on a GPU.
 typedef struct scree_broad_phase
 {
-    scree_device *device; ///< where all arrays lie, NULL: the CPU
+    scree_device *device;   ///< where all arrays lie, NULL: the CPU
+    scree_scratch *scratch; ///< borrowed: the tree and keys are taken there, in the caller's stage; NULL: its own
     scree_lbvh tree;
     scree_candidate_pair *pairs; ///< (num_pairs) sorted by (i, j), each once
     int64_t num_pairs;

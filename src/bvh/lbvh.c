@@ -24,13 +24,10 @@ struct scree_lbvh_buffers
 
 static void destroy_buffers(struct scree_lbvh_buffers *b)
 {
-    scree_device *device = b->sort.device;
-    scree_device_free(device, b->arrays.first_leaf);
-    scree_device_free(device, b->arrays.last_leaf);
-    scree_device_free(device, b->arrays.num_left_turns);
-    scree_device_free(device, b->arrays.nodes);
-    scree_device_free(device, b->arrays.arrivals);
-    scree_device_free(device, b->arrays.chunk_bounds);
+    const scree_lbvh_build_args *a = &b->arrays;
+    void *const arrays[] = {a->first_leaf, a->last_leaf, a->num_left_turns, a->nodes, a->arrivals, a->chunk_bounds};
+    for (size_t k = 0; k < sizeof arrays / sizeof arrays[0] && b->sort.scratch == NULL; ++k)
+        scree_device_free(b->sort.device, arrays[k]);
     scree_sort_destroy(&b->sort);
 }
 
@@ -38,10 +35,16 @@ void scree_lbvh_destroy(scree_lbvh *tree)
 {
     if (tree->buffers != NULL) destroy_buffers(tree->buffers);
     free(tree->buffers);
-    *tree = (scree_lbvh){.device = tree->device, .view = {NULL, 0, SCREE_LBVH_END}};
+    *tree = (scree_lbvh){.device = tree->device, .scratch = tree->scratch, .view = {NULL, 0, SCREE_LBVH_END}};
 }
 
-/// Room for num_leaves; refused with the tree as it was.
+static void *take(const scree_lbvh *tree, int64_t num_items, size_t item_size)
+{
+    return tree->scratch != NULL ? scree_scratch_take(tree->scratch, num_items, item_size)
+                                 : scree_device_alloc(tree->device, num_items, item_size);
+}
+
+/// Room for num_leaves; refused with the tree as it was, unless that was scratch.
 static scree_status reserve(scree_lbvh *tree, int64_t num_leaves)
 {
     if (num_leaves > MAX_LEAVES) return SCREE_TOO_MANY;
@@ -50,17 +53,19 @@ static scree_status reserve(scree_lbvh *tree, int64_t num_leaves)
     if (tree->buffers == NULL) return SCREE_OUT_OF_MEMORY;
     struct scree_lbvh_buffers *b = tree->buffers;
     b->sort.device = device;
-    if (num_leaves <= b->max_leaves) return SCREE_OK;
+    b->sort.scratch = tree->scratch;
+    if (num_leaves <= b->max_leaves && tree->scratch == NULL) return SCREE_OK;
 
     // a first build takes what it needs: trees of shapes and walls do not grow
-    const int64_t max_leaves = b->max_leaves == 0 ? num_leaves : scree_buffer_grown(num_leaves);
-    struct scree_lbvh_buffers grown = {.max_leaves = max_leaves, .sort = {.device = device}};
-    grown.arrays.first_leaf = scree_device_alloc(device, max_leaves, sizeof *grown.arrays.first_leaf);
-    grown.arrays.last_leaf = scree_device_alloc(device, max_leaves, sizeof *grown.arrays.last_leaf);
-    grown.arrays.num_left_turns = scree_device_alloc(device, max_leaves, sizeof *grown.arrays.num_left_turns);
-    grown.arrays.nodes = scree_device_alloc(device, 2 * max_leaves, sizeof *grown.arrays.nodes);
-    grown.arrays.arrivals = scree_device_alloc(device, max_leaves, sizeof *grown.arrays.arrivals);
-    grown.arrays.chunk_bounds = scree_device_alloc(device, SCREE_LBVH_BOUNDS_CHUNKS, sizeof *grown.arrays.chunk_bounds);
+    const bool is_exact = b->max_leaves == 0 || tree->scratch != NULL;
+    const int64_t max_leaves = is_exact ? num_leaves : scree_buffer_grown(num_leaves);
+    struct scree_lbvh_buffers grown = {.max_leaves = max_leaves, .sort = {.device = device, .scratch = tree->scratch}};
+    grown.arrays.first_leaf = take(tree, max_leaves, sizeof *grown.arrays.first_leaf);
+    grown.arrays.last_leaf = take(tree, max_leaves, sizeof *grown.arrays.last_leaf);
+    grown.arrays.num_left_turns = take(tree, max_leaves, sizeof *grown.arrays.num_left_turns);
+    grown.arrays.nodes = take(tree, 2 * max_leaves, sizeof *grown.arrays.nodes);
+    grown.arrays.arrivals = take(tree, max_leaves, sizeof *grown.arrays.arrivals);
+    grown.arrays.chunk_bounds = take(tree, SCREE_LBVH_BOUNDS_CHUNKS, sizeof *grown.arrays.chunk_bounds);
     const bool has_all = grown.arrays.first_leaf != NULL && grown.arrays.last_leaf != NULL &&
                          grown.arrays.num_left_turns != NULL && grown.arrays.nodes != NULL &&
                          grown.arrays.arrivals != NULL && grown.arrays.chunk_bounds != NULL;

@@ -4,12 +4,13 @@
 #define SCREE_LBVH_H
 
 #include "bvh/lbvh_kernel.h"
-#include "core/device.h"
+#include "core/scratch.h"
 
 /// Owns its buffers and keeps them between builds. Start from {0}, or from {.device = ...} for a tree on a GPU.
 typedef struct scree_lbvh
 {
-    scree_device *device; ///< where the boxes and the tree lie, NULL: the CPU
+    scree_device *device;   ///< where the boxes and the tree lie, NULL: the CPU
+    scree_scratch *scratch; ///< borrowed: each build takes its arrays there, and they live as long; NULL: its own
     scree_lbvh_view view;
     struct scree_lbvh_buffers *buffers; ///< internal
 } scree_lbvh;

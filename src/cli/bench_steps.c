@@ -155,7 +155,8 @@ static scree_status measure(const scree_bench_way *ways, int num_ways, const scr
 
 json_t *scree_bench_memory(const scree_simulation *s)
 {
-    const scree_plan_bytes bytes = scree_simulation_plan_bytes(s);
+    const scree_plan_bytes bytes = scree_plan_added_up(scree_simulation_plan_bytes(s), s->particles.num_particles,
+                                                       s->counters.num_pairs, s->counters.num_contacts);
     const struct mallinfo2 info = mallinfo2();
     struct rusage usage;
     getrusage(RUSAGE_SELF, &usage);

@@ -5,25 +5,26 @@
 #include <math.h>
 #include <stdlib.h>
 
-/// Every array of one entry per contact: X(name, carried to the next step?, does the list have a use for it?).
+/// Every array of one entry per contact: X(name, carried to the next step?, does the list have a use for it?). Those
+/// that are not carried stand in the block in this order, the forces that are written last and as a whole first.
 #define SCREE_CONTACT_ARRAYS(X)                                             \
-    X(bodies, true, true)                                                   \
-    X(patch, true, true)                                                    \
-    X(volume, false, true)                                                  \
-    X(indentation, false, true)                                             \
-    X(radius, true, !list->acts_in_points)                                  \
-    X(normal, false, true)                                                  \
-    X(area_vector, false, !list->acts_in_points && !list->has_no_levers)    \
-    X(torque_vector, false, !list->acts_in_points && !list->has_no_levers)  \
-    X(arm, true, true)                                                      \
     X(normal_force, false, true)                                            \
     X(tangential_force, false, true)                                        \
-    X(elastic_force, false, true)                                           \
     X(moment, false, !list->acts_in_points)                                 \
+    X(elastic_force, false, true)                                           \
     X(elastic_work, false, true)                                            \
     X(spring_work, false, true)                                             \
     X(is_slipping, false, true)                                             \
     X(is_turning, false, !list->acts_in_points)                             \
+    X(volume, false, true)                                                  \
+    X(indentation, false, true)                                             \
+    X(normal, false, true)                                                  \
+    X(area_vector, false, !list->acts_in_points && !list->has_no_levers)    \
+    X(torque_vector, false, !list->acts_in_points && !list->has_no_levers)  \
+    X(bodies, true, true)                                                   \
+    X(patch, true, true)                                                    \
+    X(radius, true, !list->acts_in_points)                                  \
+    X(arm, true, true)                                                      \
     X(spring_force, true, true)                                             \
     X(tangential_stiffness, true, true)                                     \
     X(torsion, true, !list->acts_in_points)                                 \
@@ -68,27 +69,87 @@ static scree_status reserve_pairs(scree_contact_list *list, int64_t num_pairs)
     return SCREE_OK;
 }
 
-scree_status scree_contact_list_reserve(scree_contact_list *list, int64_t num_contacts, int64_t num_pairs)
+/// A new block for max_contacts: all arrays that are not carried.
+static scree_status renew_block(scree_contact_list *list, int64_t max_contacts)
 {
-    scree_device *device = list->device;
-    const scree_status status = reserve_pairs(list, num_pairs);
-    const bool grows = num_contacts > list->max_contacts && !list->is_history;
-    const bool grows_carried = num_contacts > list->max_carried;
-    if (status != SCREE_OK || (!grows && !grows_carried)) return status;
-    const int64_t max = scree_buffer_grown(num_contacts);
-#define SCREE_GROW(array, is_carried, is_used)                                                           \
-    if ((is_carried) ? grows_carried : grows)                                                            \
-    {                                                                                                    \
-        const int64_t num_kept = (is_carried) ? list->max_carried : list->max_contacts;                  \
-        const bool is_grown = (is_used) ? grow(device, &list->array, num_kept, max, sizeof *list->array) \
-                                        : grow_zeros(device, &list->array, max, sizeof *list->array);    \
-        if (!is_grown) return SCREE_OUT_OF_MEMORY;                                                       \
+    int64_t num_bytes = 0;
+#define SCREE_ADD(array, is_carried, is_used) \
+    num_bytes += !(is_carried) && (is_used) ? scree_scratch_bytes(max_contacts, sizeof *list->array) : 0;
+    SCREE_CONTACT_ARRAYS(SCREE_ADD)
+#undef SCREE_ADD
+    list->max_contacts = 0;
+    if (list->scratch == NULL)
+    {
+        scree_device_free(list->device, list->block);
+        list->block = scree_device_alloc(list->device, num_bytes, 1);
     }
+    else
+    {
+        const scree_status status = scree_scratch_begin(list->scratch, num_bytes);
+        list->block = status == SCREE_OK ? scree_scratch_take(list->scratch, num_bytes, 1) : NULL;
+    }
+    if (list->block == NULL) return SCREE_OUT_OF_MEMORY;
+    char *place = list->block;
+#define SCREE_PLACE(array, is_carried, is_used)                                                                     \
+    if (!(is_carried) && (is_used))                                                                                 \
+    {                                                                                                               \
+        list->array = (void *)place;                                                                                \
+        place += scree_scratch_bytes(max_contacts, sizeof *list->array);                                            \
+    }                                                                                                               \
+    else if (!(is_carried) && max_contacts > list->most_contacts)                                                   \
+    {                                                                                                               \
+        if (!grow_zeros(list->device, &list->array, max_contacts, sizeof *list->array)) return SCREE_OUT_OF_MEMORY; \
+    }
+    SCREE_CONTACT_ARRAYS(SCREE_PLACE)
+#undef SCREE_PLACE
+    if (max_contacts > list->most_contacts) list->most_contacts = max_contacts;
+    list->max_contacts = max_contacts;
+    return SCREE_OK;
+}
+
+static scree_status reserve_carried(scree_contact_list *list, int64_t num_contacts)
+{
+    if (num_contacts <= list->max_carried) return SCREE_OK;
+    const int64_t max = scree_buffer_grown(num_contacts), num_kept = list->max_carried;
+#define SCREE_GROW(array, is_carried, is_used)                                                             \
+    if ((is_carried) && !((is_used) ? grow(list->device, &list->array, num_kept, max, sizeof *list->array) \
+                                    : grow_zeros(list->device, &list->array, max, sizeof *list->array)))   \
+        return SCREE_OUT_OF_MEMORY;
     SCREE_CONTACT_ARRAYS(SCREE_GROW)
 #undef SCREE_GROW
-    if (grows) list->max_contacts = max;
-    if (grows_carried) list->max_carried = max;
+    list->max_carried = max;
     return SCREE_OK;
+}
+
+scree_status scree_contact_list_reserve(scree_contact_list *list, int64_t num_contacts, int64_t num_pairs)
+{
+    scree_status status = reserve_pairs(list, num_pairs);
+    if (status == SCREE_OK) status = reserve_carried(list, num_contacts);
+    const bool has_room = list->is_history || num_contacts <= list->max_contacts;
+    if (status != SCREE_OK || has_room) return status;
+    return renew_block(list, num_contacts > list->most_contacts ? num_contacts : list->most_contacts);
+}
+
+void scree_contact_list_lend(scree_contact_list *list, scree_scratch *scratch)
+{
+    if (list->scratch == NULL) scree_device_free(list->device, list->block);
+    list->scratch = scratch;
+    list->block = NULL;
+    list->max_contacts = 0;
+#define SCREE_FORGET(array, is_carried, is_used) \
+    if (!(is_carried) && (is_used)) list->array = NULL;
+    SCREE_CONTACT_ARRAYS(SCREE_FORGET)
+#undef SCREE_FORGET
+}
+
+int64_t scree_contact_list_wanted(int64_t num_contacts) { return num_contacts + num_contacts / 16 + 16; }
+
+void *scree_contact_list_spare(const scree_contact_list *list) { return list->normal_force; }
+
+size_t scree_contact_list_spare_bytes(const scree_contact_list *list)
+{
+    return list->acts_in_points ? 0
+                                : sizeof *list->normal_force + sizeof *list->tangential_force + sizeof *list->moment;
 }
 
 int64_t scree_contact_list_room(const scree_contact_list *list)
@@ -141,21 +202,32 @@ scree_status scree_contact_list_copy(scree_contact_list *to, const scree_contact
     return SCREE_OK;
 }
 
-int64_t scree_contact_list_bytes(const scree_contact_list *list)
+int64_t scree_contact_list_block_bytes(const scree_contact_list *list)
 {
     size_t num_bytes = 0;
-#define SCREE_ADD(array, is_carried, is_used) num_bytes += (is_used) ? ((is_carried) ? 2 : 1) * sizeof *list->array : 0;
+#define SCREE_ADD(array, is_carried, is_used) num_bytes += !(is_carried) && (is_used) ? sizeof *list->array : 0;
     SCREE_CONTACT_ARRAYS(SCREE_ADD)
 #undef SCREE_ADD
     return (int64_t)num_bytes;
 }
 
+int64_t scree_contact_list_bytes(const scree_contact_list *list)
+{
+    size_t num_bytes = 0;
+#define SCREE_ADD(array, is_carried, is_used) num_bytes += (is_carried) && (is_used) ? 2 * sizeof *list->array : 0;
+    SCREE_CONTACT_ARRAYS(SCREE_ADD)
+#undef SCREE_ADD
+    return (int64_t)num_bytes + scree_contact_list_block_bytes(list);
+}
+
 void scree_contact_list_destroy(scree_contact_list *list)
 {
     scree_device *device = list->device;
-#define SCREE_FREE(array, is_carried, is_used) scree_device_free(device, list->array);
+#define SCREE_FREE(array, is_carried, is_used) \
+    if ((is_carried) || !(is_used)) scree_device_free(device, list->array);
     SCREE_CONTACT_ARRAYS(SCREE_FREE)
 #undef SCREE_FREE
+    if (list->scratch == NULL) scree_device_free(device, list->block);
     scree_device_free(device, list->first_of_pair);
     scree_contact_list empty = {.device = device, .is_history = list->is_history};
     scree_contact_list_share_uses(&empty, list);

@@ -4,6 +4,7 @@
 #define SCREE_CONTACT_LIST_H
 
 #include "bvh/broad_phase.h"
+#include "core/scratch.h"
 
 /// Bits of a patch that count the contacts of one part of a pair. Above them stands the part: which two spheres of
 /// clumps, or which sphere of a clump on a mesh; 0 between other bodies. A part stays the same from step to step, so
@@ -16,10 +17,13 @@
 typedef struct scree_contact_list
 {
     int64_t num_contacts;
-    int64_t max_contacts; ///< room of the arrays without +
+    int64_t max_contacts; ///< room of the arrays without +, which lie in one block
     int64_t max_carried;  ///< room of the arrays with +
     int64_t max_pairs;
     scree_device *device;   ///< where the arrays lie, NULL: the CPU
+    scree_scratch *scratch; ///< borrowed: where the block is taken; NULL: it is owned
+    void *block;
+    int64_t most_contacts;  ///< that the block has ever had room for
     bool is_history;        ///< of the step before: there are only the arrays with +, and first_of_pair
     bool acts_in_points;    ///< all bodies are spheres and no law has moments: no use for arrays with *
     bool has_no_levers;     ///< no law asks for the shape of the overlap: no use for arrays with **
@@ -68,9 +72,20 @@ SCREE_FN scree_contact_list scree_contact_list_view(const scree_contact_list *li
 /// The present contacts become those of the step before: the arrays with + and first_of_pair change places. The
 /// present list keeps the others, to be written anew. It has no contacts then.
 void scree_contact_list_pass_on(scree_contact_list *present, scree_contact_list *history);
-/// Room for num_contacts and num_pairs, growing by a quarter at least. SCREE_OUT_OF_MEMORY leaves what the list holds
-/// as it was.
+/// Gives the block up for a search of candidate pairs: all but the arrays with + is lost until the next call of
+/// scree_contact_list_reserve(), which takes it from `scratch`, by itself a stage of it.
+void scree_contact_list_lend(scree_contact_list *list, scree_scratch *scratch);
+/// Room for num_contacts, exactly in the block, and num_pairs; other arrays grow by a quarter at least. What goes on to
+/// the next step stays, also if memory is out; the rest is lost if the block must grow. SCREE_OUT_OF_MEMORY.
 scree_status scree_contact_list_reserve(scree_contact_list *list, int64_t num_contacts, int64_t num_pairs);
+/// Room that a search of candidate pairs asks for when it finds num_contacts: some more, for those of the steps until
+/// the next one.
+int64_t scree_contact_list_wanted(int64_t num_contacts);
+/// Memory of the forces, which are written after the geometry, until they are: scree_contact_list_spare_bytes() for
+/// each contact of max_contacts at least.
+void *scree_contact_list_spare(const scree_contact_list *list);
+/// 0 if contacts act in points.
+size_t scree_contact_list_spare_bytes(const scree_contact_list *list);
 /// Contacts that it has room for.
 int64_t scree_contact_list_room(const scree_contact_list *list);
 /// What one list has no use for, another has none for either.
@@ -79,6 +94,8 @@ void scree_contact_list_share_uses(scree_contact_list *to, const scree_contact_l
 scree_status scree_contact_list_copy(scree_contact_list *to, const scree_contact_list *from);
 /// Bytes of a contact in a list of these uses and in the history of the step before.
 int64_t scree_contact_list_bytes(const scree_contact_list *list);
+/// Those of them in the block.
+int64_t scree_contact_list_block_bytes(const scree_contact_list *list);
 void scree_contact_list_destroy(scree_contact_list *list);
 /// On the CPU: sorted by (i, j, patch), unique, normals unit, volumes positive. Faults go to the report.
 bool scree_contact_list_validate(const scree_contact_list *list, scree_report *report);

@@ -20,6 +20,7 @@ typedef struct pair_batch
 struct scree_narrow_phase_buffers
 {
     int64_t num_sorted; ///< candidate pairs that the batches are made of; -1: they have changed
+    int64_t num_found;  ///< contacts, the last time
     pair_batch batches[SCREE_NUM_PAIR_KINDS];
     scree_scan_scratch scan;
     scree_pair_tally *tally; ///< may be borrowed
@@ -29,18 +30,15 @@ struct scree_narrow_phase_buffers
     scree_overlap_result *results; ///< (slices of the pool, max_results) of pairs under way
     int64_t num_with_results;      ///< slices
     int32_t max_results;           ///< of one pair
-    scree_kept_overlap *kept;      ///< (max_kept) of pairs that touch
-    scree_kept_lever *kept_levers; ///< (max_kept) or NULL
-    int64_t max_kept;
+    scree_kept_lever *kept_levers; ///< (max_levers) of pairs that touch, or NULL
+    int64_t max_levers;
     int32_t *first_kept; ///< (num in batch); during a search of candidates the first body of each pair
     int32_t *active;     ///< (num of classes, max_mesh_pairs); meanwhile the second body
     int64_t max_mesh_pairs;
-    scree_pair_memory *memory;     ///< (num in batch)
-    scree_pair_memory *old_memory; ///< (num_carried) of the pairs before the last search of candidates
-    int64_t max_memory, max_old_memory;
-    int64_t num_carried; ///< pairs whose memory the next batch takes over
-    int32_t *groups;     ///< (2, max_grouped) where the pairs of each first body begin and end
-    int64_t max_grouped;
+    scree_pair_memory *memory; ///< (num in batch); during a search of candidates (num_carried) that of the pairs before
+    int64_t max_memory;
+    int64_t num_carried;   ///< pairs whose memory the next batch takes over
+    scree_scratch scratch; ///< for lists that borrow none
 
     scree_sphere *spheres; ///< (max_bodies)
     int64_t max_bodies;
@@ -64,13 +62,11 @@ void scree_narrow_phase_destroy(scree_narrow_phase *narrow_phase)
         scree_overlap_pool_destroy(&b->pool);
         if (narrow_phase->tally == NULL) scree_device_free(device, b->tally);
         scree_device_free(device, b->results);
-        scree_device_free(device, b->kept);
         scree_device_free(device, b->kept_levers);
         scree_device_free(device, b->first_kept);
         scree_device_free(device, b->active);
         scree_device_free(device, b->memory);
-        scree_device_free(device, b->old_memory);
-        scree_device_free(device, b->groups);
+        scree_scratch_destroy(&b->scratch);
         scree_device_free(device, b->spheres);
         scree_device_free(device, b->found);
         scree_device_free(device, b->near);
@@ -115,7 +111,7 @@ static scree_status start(scree_narrow_phase *narrow_phase)
     if (b == NULL) return SCREE_OUT_OF_MEMORY;
     narrow_phase->buffers = b;
     b->num_sorted = -1;
-    b->scan.device = b->pool.device = narrow_phase->device;
+    b->scan.device = b->pool.device = b->scratch.device = narrow_phase->device;
     b->tally = narrow_phase->tally;
     if (b->tally == NULL) b->tally = scree_device_alloc(narrow_phase->device, 1, sizeof *b->tally);
     return b->tally != NULL ? SCREE_OK : SCREE_OUT_OF_MEMORY;
@@ -163,19 +159,21 @@ static scree_status reserve_mesh_pairs(scree_narrow_phase *narrow_phase)
     return SCREE_OK;
 }
 
-/// Room for `num` overlaps that touch.
-static scree_status reserve_kept(scree_narrow_phase *narrow_phase, int64_t num, bool has_levers)
+/// Room for `num` contacts, and for what is kept of them in the memory of their forces.
+static scree_status reserve_kept(scree_narrow_phase *narrow_phase, scree_contact_list *list, int64_t num)
 {
     struct scree_narrow_phase_buffers *b = narrow_phase->buffers;
-    scree_device *device = narrow_phase->device;
     if (num > INT32_MAX) return SCREE_TOO_MANY;
-    if (num <= b->max_kept && (b->kept_levers != NULL || !has_levers)) return SCREE_OK;
-    b->max_kept = 0;
-    const int64_t max = scree_buffer_grown(num);
-    if (!renew(device, &b->kept, max, sizeof *b->kept)) return SCREE_OUT_OF_MEMORY;
-    if (has_levers && !renew(device, &b->kept_levers, max, sizeof *b->kept_levers)) return SCREE_OUT_OF_MEMORY;
-    b->max_kept = max;
-    return SCREE_OK;
+    const scree_status status = scree_contact_list_reserve(list, num, 0);
+    if (status != SCREE_OK || list->has_no_levers) return status;
+    return scree_device_reserve_only(narrow_phase->device, &b->kept_levers, &b->max_levers, list->max_contacts,
+                                     sizeof *b->kept_levers);
+}
+
+/// Overlaps that there is room for.
+static int64_t max_kept(const scree_narrow_phase *narrow_phase, const scree_contact_list *list)
+{
+    return narrow_phase->buffers->batches[SCREE_PAIR_MESH_MESH].num > 0 ? list->max_contacts : 0;
 }
 
 /// Room for what is found between spheres and meshes.
@@ -224,16 +222,18 @@ static scree_status reserve_slices(scree_narrow_phase *narrow_phase, scree_overl
     return SCREE_OK;
 }
 
-/// Room for results to begin with, that of one pair in eight; it stays what it has grown to.
-static scree_status start_results(scree_narrow_phase *narrow_phase, bool has_levers)
+/// Room for results: that of one pair in eight to begin with, then for as many as the last time and some more, so that
+/// it seldom lacks, and never less than it was.
+static scree_status start_results(scree_narrow_phase *narrow_phase, scree_contact_list *list)
 {
     const struct scree_narrow_phase_buffers *b = narrow_phase->buffers;
     const scree_overlap_room usual = {512, 1024, 128};
     const scree_status status = reserve_slices(
         narrow_phase, narrow_phase->room.max_pieces > 0 ? narrow_phase->room : usual, first_results(narrow_phase));
     const int64_t num = b->batches[SCREE_PAIR_MESH_MESH].num;
-    if (status != SCREE_OK || num == 0 || b->max_kept > 0) return status;
-    return reserve_kept(narrow_phase, num / 8 + 1, has_levers);
+    if (status != SCREE_OK || num == 0) return status;
+    const int64_t num_wanted = b->num_found > 0 ? scree_contact_list_wanted(b->num_found) : num / 8 + 1;
+    return reserve_kept(narrow_phase, list, num_wanted);
 }
 
 /// What a search goes over.
@@ -252,31 +252,33 @@ static scree_status take_memory(const search *s)
     struct scree_narrow_phase_buffers *b = s->narrow_phase->buffers;
     scree_device *device = s->narrow_phase->device;
     const pair_batch *batch = b->batches + SCREE_PAIR_MESH_MESH;
-    scree_pair_memory *old = b->memory;
-    const int64_t max_old = b->max_memory;
-    b->memory = b->old_memory;
-    b->max_memory = b->max_old_memory;
-    b->old_memory = old;
-    b->max_old_memory = max_old;
+    const int64_t num_bodies = s->bodies.num_bodies, num_carried = b->num_carried;
+    b->num_carried = 0;
     if (batch->num == 0) return SCREE_OK;
-    const int64_t num_bodies = s->bodies.num_bodies;
-    scree_status status = scree_device_reserve(device, &b->memory, &b->max_memory, batch->num, sizeof *b->memory);
-    if (status == SCREE_OK)
-        status = scree_device_reserve(device, &b->groups, &b->max_grouped, num_bodies, 2 * sizeof *b->groups);
+    scree_scratch *scratch = s->list->scratch != NULL ? s->list->scratch : &b->scratch;
+    const size_t memory_bytes = (size_t)batch->num * sizeof *b->memory;
+    const int64_t num_bytes =
+        scree_scratch_bytes(2 * num_bodies, sizeof(int32_t)) + scree_scratch_bytes(batch->num, sizeof *b->memory);
+    scree_status status = scree_scratch_begin(scratch, num_bytes);
     if (status != SCREE_OK) return status;
-    const scree_pair_groups kept = {b->first_kept, b->active, 1, b->num_carried, b->groups, b->groups + num_bodies};
-    scree_device_zero(device, b->groups, (size_t)num_bodies * 2 * sizeof *b->groups);
+    int32_t *groups = scree_scratch_take(scratch, 2 * num_bodies, sizeof *groups);
+    scree_pair_memory *memory = scree_scratch_take(scratch, batch->num, sizeof *memory);
+    if (groups == NULL || memory == NULL) return SCREE_OUT_OF_MEMORY;
+    const scree_pair_groups kept = {b->first_kept, b->active, 1, num_carried, groups, groups + num_bodies};
+    scree_device_zero(device, groups, (size_t)num_bodies * 2 * sizeof *groups);
     scree_group_bounds_launch_on(device, kept, kept.num);
     scree_pair_carry_args args;
     memset(&args, 0, sizeof args); // the gaps between its members too
     args.pairs = s->pairs;
     args.batch = batch->pairs;
-    args.memory = b->memory;
+    args.memory = memory;
     args.kept = kept;
-    args.old_memory = b->old_memory;
+    args.old_memory = b->memory;
     scree_pair_carry_launch_on(device, args, batch->num);
-    b->num_carried = 0;
-    return SCREE_OK;
+    // the old one has been read
+    status = scree_device_reserve(device, &b->memory, &b->max_memory, batch->num, sizeof *b->memory);
+    if (status == SCREE_OK) scree_device_copy(device, b->memory, memory, memory_bytes);
+    return status;
 }
 
 static scree_sphere_pairs_args sphere_args(const search *s, scree_pair_kind kind)
@@ -351,9 +353,9 @@ static scree_mesh_pairs_args mesh_args(const search *s)
     args.active = b->active;
     args.max_active = b->max_mesh_pairs;
     args.classes = s->narrow_phase->classes;
-    args.kept = b->kept;
+    args.kept = scree_contact_list_spare(s->list);
     args.kept_levers = s->list->has_no_levers ? NULL : b->kept_levers;
-    args.max_kept = b->max_kept;
+    args.max_kept = max_kept(s->narrow_phase, s->list);
     args.first_kept = b->first_kept;
     args.list = scree_contact_list_view(s->list);
     args.tally = b->tally;
@@ -433,7 +435,6 @@ static scree_status make_room(const search *s, const scree_pair_tally *tally)
 {
     const struct scree_narrow_phase_buffers *b = s->narrow_phase->buffers;
     const int32_t most_results = (int32_t)scree_maximum_value(tally->most_results);
-    const bool lacks_kept = tally->num_kept > b->max_kept;
     const int32_t most_found = (int32_t)scree_maximum_value(tally->most_found);
     scree_overlap_room room = b->pool.room;
     if (tally->num_lacking[SCREE_LACK_PIECES] > 0) room.max_pieces *= 2;
@@ -444,8 +445,8 @@ static scree_status make_room(const search *s, const scree_pair_tally *tally)
     if (most_found >> SCREE_PATCH_BITS > 0) return SCREE_TOO_MANY;
     scree_status status = SCREE_OK;
     if (num_lacking > 0 || most_results > 0) status = reserve_slices(s->narrow_phase, room, most_results);
-    if (status == SCREE_OK && lacks_kept)
-        status = reserve_kept(s->narrow_phase, tally->num_kept, !s->list->has_no_levers);
+    if (status == SCREE_OK && tally->num_kept > 0 && tally->num_contacts > s->list->max_contacts)
+        status = reserve_kept(s->narrow_phase, s->list, scree_contact_list_wanted(tally->num_contacts));
     if (status == SCREE_OK && most_found > 0) status = reserve_found(s->narrow_phase, most_found);
     return status;
 }
@@ -485,11 +486,13 @@ static scree_status prepare_pairs(const search *s)
 {
     scree_narrow_phase *narrow_phase = s->narrow_phase;
     narrow_phase->buffers->num_sorted = -1;
+    // its block is taken once more, after others have had the memory
+    if (s->list->scratch != NULL) scree_contact_list_lend(s->list, s->list->scratch);
     scree_status status = scree_contact_list_reserve(s->list, 0, s->num_pairs);
     if (status == SCREE_OK) status = sort_pairs(s);
     if (status == SCREE_OK) status = reserve_mesh_pairs(narrow_phase);
     if (status == SCREE_OK) status = reserve_found(narrow_phase, 3);
-    if (status == SCREE_OK) status = start_results(narrow_phase, !s->list->has_no_levers);
+    if (status == SCREE_OK) status = start_results(narrow_phase, s->list);
     return status;
 }
 
@@ -499,7 +502,7 @@ scree_status scree_narrow_phase_find(scree_narrow_phase *narrow_phase, const scr
     const search s = {narrow_phase, *bodies, pairs, num_pairs, list};
     scree_status status = start(narrow_phase);
     if (status != SCREE_OK) return status;
-    const struct scree_narrow_phase_buffers *b = narrow_phase->buffers;
+    struct scree_narrow_phase_buffers *b = narrow_phase->buffers;
     const bool are_new = b->num_sorted != num_pairs;
     if (are_new) status = prepare_pairs(&s);
     if (status == SCREE_OK) status = place_spheres(&s);
@@ -510,13 +513,19 @@ scree_status scree_narrow_phase_find(scree_narrow_phase *narrow_phase, const scr
     {
         count_contacts(&s);
         scree_device_read(narrow_phase->device, &tally, b->tally, sizeof tally);
-        lacks_room = scree_lacks_room(&tally, b->max_kept);
+        lacks_room = scree_lacks_room(&tally, max_kept(narrow_phase, list));
         if (!are_new) break;
-        // a pair that had no room asks for a second, roomier search
-        if (lacks_room) status = make_room(&s, &tally);
+        // a pair that had no room asks for a second, roomier search; so do overlaps if the list must grow, for they
+        // lie there
+        lacks_room |= tally.num_kept > 0 && tally.num_contacts > list->max_contacts;
+        if (tally.num_contacts < 0) status = SCREE_TOO_MANY;
+        else if (lacks_room) status = make_room(&s, &tally);
     }
+    b->num_found = tally.num_contacts;
     if (status == SCREE_OK && tally.num_contacts < 0) status = SCREE_TOO_MANY;
-    if (status == SCREE_OK && are_new) status = scree_contact_list_reserve(list, tally.num_contacts, num_pairs);
+    // the block stays where overlaps are kept in it
+    const int64_t num_wanted = tally.num_kept > 0 ? list->max_contacts : scree_contact_list_wanted(tally.num_contacts);
+    if (status == SCREE_OK && are_new) status = scree_contact_list_reserve(list, num_wanted, num_pairs);
     narrow_phase->lacks_room = lacks_room || tally.num_contacts > scree_contact_list_room(list);
     if (status != SCREE_OK || narrow_phase->lacks_room) return status;
     list->num_contacts = tally.num_contacts;
@@ -533,7 +542,7 @@ void scree_narrow_phase_again(scree_narrow_phase *narrow_phase, const scree_bodi
     const struct scree_narrow_phase_buffers *b = narrow_phase->buffers;
     place_spheres(&s); // its array is there
     count_contacts(&s);
-    const scree_room_args room = {b->tally, b->max_kept, list->num_contacts, live};
+    const scree_room_args room = {b->tally, max_kept(narrow_phase, list), list->num_contacts, live};
     scree_room_launch_on(narrow_phase->device, room, 1);
     write_contacts(&s);
 }
@@ -541,6 +550,7 @@ void scree_narrow_phase_again(scree_narrow_phase *narrow_phase, const scree_bodi
 void scree_narrow_phase_take_counts(scree_narrow_phase *narrow_phase, const scree_pair_tally *tally)
 {
     scree_narrow_phase_counts *counts = &narrow_phase->counts;
+    narrow_phase->buffers->num_found = tally->num_contacts;
     counts->num_without_normal = tally->num_without_normal;
     counts->num_fallbacks = tally->num_fallbacks;
     counts->num_inside = tally->num_inside;

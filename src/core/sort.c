@@ -38,24 +38,30 @@ static int64_t count_bytes(scree_device *device, int64_t max_items, bool has_val
     return (max_chunks < MAX_CHUNKS ? max_chunks : MAX_CHUNKS) * MAX_DIGITS * (int64_t)sizeof(uint32_t);
 }
 
+static void *take(const scree_sort_buffers *buffers, int64_t num_items, size_t item_size)
+{
+    return buffers->scratch != NULL ? scree_scratch_take(buffers->scratch, num_items, item_size)
+                                    : scree_device_alloc(buffers->device, num_items, item_size);
+}
+
 scree_status scree_sort_reserve(scree_sort_buffers *buffers, int64_t num_items, bool has_values)
 {
     if (num_items > (int64_t)UINT32_MAX) return SCREE_TOO_MANY;
     if (buffers->counts != NULL && num_items <= buffers->max_items && (buffers->has_values || !has_values))
         return SCREE_OK;
     scree_device *device = buffers->device;
-    scree_sort_buffers grown = {.device = device};
+    scree_sort_buffers grown = {.device = device, .scratch = buffers->scratch};
     grown.has_values = buffers->has_values || has_values;
     grown.max_items = num_items <= buffers->max_items ? buffers->max_items : num_items;
-    grown.keys = scree_device_alloc(device, grown.max_items, sizeof *grown.keys);
-    grown.spare_keys = scree_device_alloc(device, grown.max_items, sizeof *grown.keys);
+    grown.keys = take(&grown, grown.max_items, sizeof *grown.keys);
+    grown.spare_keys = take(&grown, grown.max_items, sizeof *grown.keys);
     grown.num_count_bytes = count_bytes(device, grown.max_items, grown.has_values);
-    grown.counts = scree_device_alloc(device, grown.num_count_bytes, 1);
+    grown.counts = take(&grown, grown.num_count_bytes, 1);
     bool is_complete = grown.keys != NULL && grown.spare_keys != NULL && grown.counts != NULL;
     if (grown.has_values)
     {
-        grown.values = scree_device_alloc(device, grown.max_items, sizeof *grown.values);
-        grown.spare_values = scree_device_alloc(device, grown.max_items, sizeof *grown.values);
+        grown.values = take(&grown, grown.max_items, sizeof *grown.values);
+        grown.spare_values = take(&grown, grown.max_items, sizeof *grown.values);
         is_complete = is_complete && grown.values != NULL && grown.spare_values != NULL;
     }
     scree_sort_destroy(is_complete ? buffers : &grown);
@@ -67,12 +73,11 @@ scree_status scree_sort_reserve(scree_sort_buffers *buffers, int64_t num_items, 
 void scree_sort_destroy(scree_sort_buffers *buffers)
 {
     scree_device *device = buffers->device;
-    scree_device_free(device, buffers->keys);
-    scree_device_free(device, buffers->values);
-    scree_device_free(device, buffers->spare_keys);
-    scree_device_free(device, buffers->spare_values);
-    scree_device_free(device, buffers->counts);
-    *buffers = (scree_sort_buffers){.device = device};
+    void *const arrays[] = {buffers->keys, buffers->values, buffers->spare_keys, buffers->spare_values,
+                            buffers->counts};
+    for (size_t k = 0; k < sizeof arrays / sizeof arrays[0] && buffers->scratch == NULL; ++k)
+        scree_device_free(device, arrays[k]);
+    *buffers = (scree_sort_buffers){.device = device, .scratch = buffers->scratch};
 }
 
 /// How the items are shared: chunk c holds first_of_chunk(c) up to first_of_chunk(c + 1).

@@ -4,15 +4,16 @@
 #ifndef SCREE_SORT_H
 #define SCREE_SORT_H
 
-#include "core/device.h"
+#include "core/scratch.h"
 
 /// Two places for the items: a pass reads one and writes the other. Start from {0}, reserve, fill `keys` and, if they
 /// are wanted, `values`; after the sort the answer stands in `keys` and `values`, which may then be other addresses.
 typedef struct scree_sort_buffers
 {
-    scree_device *device; ///< where the arrays lie; set before the first call, NULL for the CPU
-    uint64_t *keys;       ///< (max_items)
-    int32_t *values;      ///< (max_items), NULL if reserved without values
+    scree_device *device;   ///< where the arrays lie; set before the first call, NULL for the CPU
+    scree_scratch *scratch; ///< borrowed: the arrays are taken there and live as long; NULL: they are owned
+    uint64_t *keys;         ///< (max_items)
+    int32_t *values;        ///< (max_items), NULL if reserved without values
     uint64_t *spare_keys;
     int32_t *spare_values;
     void *counts; ///< histograms of the digits, one per chunk; on a GPU scratch memory of CUB

@@ -11,10 +11,9 @@ static scree_status make_room(scree_simulation *s)
 {
     scree_step_buffers *b = s->buffers;
     scree_device *device = s->device;
-    const int64_t num = s->contacts.num_contacts, wanted = num + num / 16 + 16;
-    scree_status status = scree_contact_list_reserve(&s->contacts, wanted, s->broad_phase.num_pairs);
-    // the two lists change places
-    if (status == SCREE_OK) status = scree_contact_list_reserve(&s->old_contacts, wanted, s->broad_phase.num_pairs);
+    // the two lists change places, and the present one has that room
+    scree_status status =
+        scree_contact_list_reserve(&s->old_contacts, s->contacts.max_contacts, s->broad_phase.num_pairs);
     if (status != SCREE_OK) return status;
     // none of them ever has more contacts than that
     const int64_t most = s->contacts.max_contacts, num_blocks = 2 * scree_count_blocks(most, SCREE_WORK_BLOCK);

@@ -386,6 +386,7 @@ void scree_simulation_destroy(scree_simulation *simulation)
     scree_contact_list_destroy(&simulation->old_contacts);
     scree_broad_phase_destroy(&simulation->broad_phase);
     scree_narrow_phase_destroy(&simulation->narrow_phase);
+    scree_scratch_destroy(&simulation->scratch);
     free(simulation->particle_shapes);
     free(simulation->wall_shapes);
     free(simulation->shape_views);

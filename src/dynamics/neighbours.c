@@ -46,6 +46,27 @@ bool scree_is_search_due(scree_simulation *simulation)
     return scree_leaves_skin(b->moved, b->skin);
 }
 
+/// Boxes and bounding spheres of the particles, in the memory that contacts give up for the search.
+static scree_status place_boxes(scree_simulation *s, scree_boxes_args *boxes)
+{
+    const scree_step_buffers *b = s->buffers;
+    const int64_t num = s->particles.num_particles;
+    scree_contact_list_lend(&s->contacts, &s->scratch);
+    s->broad_phase.scratch = &s->scratch;
+    const scree_status status = scree_scratch_begin(&s->scratch, 0);
+    if (status != SCREE_OK) return status;
+    boxes->shapes = s->shape_views;
+    boxes->shape = b->shape;
+    boxes->pose = b->pose;
+    boxes->skin = b->skin;
+    boxes->boxes = scree_scratch_take(&s->scratch, num, sizeof *boxes->boxes);
+    boxes->centres = scree_scratch_take(&s->scratch, num, sizeof *boxes->centres);
+    boxes->radii = scree_scratch_take(&s->scratch, num, sizeof *boxes->radii);
+    if (boxes->boxes == NULL || boxes->centres == NULL || boxes->radii == NULL) return SCREE_OUT_OF_MEMORY;
+    scree_boxes_launch_on(s->device, *boxes, num);
+    return SCREE_OK;
+}
+
 scree_status scree_search_neighbours(scree_simulation *simulation)
 {
     scree_step_buffers *b = simulation->buffers;
@@ -55,14 +76,8 @@ scree_status scree_search_neighbours(scree_simulation *simulation)
     const int64_t num_bodies = num_particles + simulation->num_walls;
 
     scree_boxes_args boxes;
-    boxes.shapes = simulation->shape_views;
-    boxes.shape = b->shape;
-    boxes.pose = b->pose;
-    boxes.skin = b->skin;
-    boxes.boxes = b->boxes;
-    boxes.centres = b->centres;
-    boxes.radii = b->radii;
-    scree_boxes_launch_on(device, boxes, num_particles);
+    scree_status status = place_boxes(simulation, &boxes);
+    if (status != SCREE_OK) return status;
 
     for (int32_t w = 0; w < simulation->num_walls; ++w)
     {
@@ -73,9 +88,9 @@ scree_status scree_search_neighbours(scree_simulation *simulation)
                        (size_t)simulation->num_walls * sizeof *b->wall_input);
 
     scree_broad_phase_input input;
-    input.boxes = b->boxes;
-    input.centres = b->centres;
-    input.radii = b->radii;
+    input.boxes = boxes.boxes;
+    input.centres = boxes.centres;
+    input.radii = boxes.radii;
     input.compares_spheres = simulation->scene->solver.compare_spheres;
     input.walls = b->broad_phase_walls;
     input.num_particles = num_particles;
@@ -83,7 +98,7 @@ scree_status scree_search_neighbours(scree_simulation *simulation)
     const scree_bodies bodies = scree_step_bodies(simulation);
     if (!b->has_pairs || !simulation->scene->solver.reuse_pairs) scree_narrow_phase_forget(&simulation->narrow_phase);
     else scree_narrow_phase_carry(&simulation->narrow_phase, &bodies, simulation->broad_phase.pairs);
-    const scree_status status = scree_broad_phase_find(&simulation->broad_phase, &input);
+    status = scree_broad_phase_find(&simulation->broad_phase, &input);
     if (status != SCREE_OK) return status;
 
     scree_device_zero(device, b->travel, (size_t)num_bodies * sizeof *b->travel);

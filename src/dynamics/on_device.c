@@ -71,21 +71,22 @@ static int64_t overlap_bytes(const scree_simulation *here, scree_device *device)
 
 scree_device_memory scree_device_memory_of(const scree_simulation *simulation)
 {
-    const scree_plan_bytes bytes = scree_simulation_plan_bytes(simulation);
+    scree_device_memory memory;
+    const int64_t num = simulation->particles.num_particles, num_pairs = simulation->counters.num_pairs,
+                  num_contacts = simulation->counters.num_contacts;
+    memory.num_pairs = num_pairs > BED_PAIRS * num ? num_pairs : BED_PAIRS * num;
+    memory.num_contacts = num_contacts > BED_CONTACTS * num ? num_contacts : BED_CONTACTS * num;
+    const scree_plan_bytes bytes =
+        scree_plan_added_up(scree_simulation_plan_bytes(simulation), num, memory.num_pairs, memory.num_contacts);
     // a list of active pairs for each class after the first
     const scree_work_classes classes = classes_of(simulation);
     const size_t lists = (size_t)(classes.last - classes.first) * sizeof(int32_t);
-    scree_device_memory memory;
     memory.per_particle = (int64_t)(bytes.state + bytes.search);
     memory.per_pair = (int64_t)(SLACK * (double)((size_t)scree_plan_largest_pair(&bytes) + lists));
     // accounts of collisions now and in the step before, places and what comes to the host of those that have ended
     const size_t collision =
         simulation->averages.num_bins > 0 ? 4 * sizeof(double) + sizeof(int64_t) + sizeof(scree_ended_collision) : 0;
     memory.per_contact = (int64_t)(SLACK * (double)(bytes.contact + 2 * sizeof(scree_contact_side) + collision));
-    const int64_t num = simulation->particles.num_particles, num_pairs = simulation->counters.num_pairs,
-                  num_contacts = simulation->counters.num_contacts;
-    memory.num_pairs = num_pairs > BED_PAIRS * num ? num_pairs : BED_PAIRS * num;
-    memory.num_contacts = num_contacts > BED_CONTACTS * num ? num_contacts : BED_CONTACTS * num;
     memory.shapes = bytes.shapes;
     memory.total = memory.shapes + memory.per_particle * num + memory.per_pair * memory.num_pairs +
                    memory.per_contact * memory.num_contacts;
@@ -150,9 +151,6 @@ static scree_status copy_buffers(scree_simulation *there, const scree_simulation
     SCREE_COPY(last_pose, num_bodies)
     SCREE_COPY(travel, num_bodies)
     SCREE_COPY(old_groups, 2 * num_bodies)
-    SCREE_COPY(boxes, num_particles)
-    SCREE_COPY(centres, num_particles)
-    SCREE_COPY(radii, num_particles)
 #undef SCREE_COPY
     b->broad_phase_walls = scree_device_alloc(device, num_walls + 1, sizeof *b->broad_phase_walls);
     b->wall_input = calloc((size_t)num_walls + 1, sizeof *b->wall_input);
@@ -167,7 +165,7 @@ static scree_status copy_buffers(scree_simulation *there, const scree_simulation
 static scree_status move(scree_simulation *there, scree_simulation *here)
 {
     scree_device *device = there->device;
-    there->contacts.device = there->old_contacts.device = device;
+    there->contacts.device = there->old_contacts.device = there->scratch.device = device;
     there->old_contacts.is_history = true;
     scree_contact_list_share_uses(&there->old_contacts, &here->contacts);
     there->broad_phase.device = there->narrow_phase.device = there->clock.device = device;
@@ -296,6 +294,7 @@ void scree_leave_device(scree_simulation *simulation)
     scree_contact_list_destroy(&there->old_contacts);
     scree_broad_phase_destroy(&there->broad_phase);
     scree_narrow_phase_destroy(&there->narrow_phase);
+    scree_scratch_destroy(&there->scratch);
     scree_collisions_destroy(&there->averages.collisions);
     scree_destroy_collision_scratch(&there->averages, device);
     for (int32_t k = 0; there->views_here != NULL && k < 2 * there->num_shapes; ++k)

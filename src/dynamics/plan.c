@@ -20,19 +20,36 @@ scree_plan_bytes scree_simulation_plan_bytes(const scree_simulation *simulation)
     bytes.state = 6 * sizeof(scree_vec3) + sizeof(scree_quat) + 2 * sizeof(scree_real) + 3 * sizeof(int32_t);
     const size_t body = 3 * sizeof(scree_pose) + sizeof(scree_moving_body) + 2 * sizeof(scree_real) + sizeof(int32_t) +
                         (has_spheres ? sizeof(scree_sphere) : 0);
-    const size_t tree = 2 * sizeof(scree_lbvh_node) + 4 * sizeof(int32_t) + 2 * (sizeof(uint64_t) + sizeof(int32_t));
+    const size_t tree =
+        2 * sizeof(scree_lbvh_node) + 3 * sizeof(int32_t) + 1 + 2 * (sizeof(uint64_t) + sizeof(int32_t));
     const size_t rows = 4 * sizeof(int32_t) + sizeof(int64_t);
-    bytes.search = body + sizeof(scree_box) + sizeof(scree_vec3) + sizeof(scree_real) + tree + rows;
-    // ids, rows, keys to sort, batch, first contact now and in the step before
-    bytes.pair = sizeof(scree_candidate_pair) + 2 * sizeof(int32_t) + 2 * sizeof(uint64_t) + sizeof(int32_t) +
-                 2 * sizeof(int32_t);
-    if (has_meshes) bytes.mesh_pair = 2 * sizeof(scree_pair_memory) + 2 * sizeof(int32_t);
+    bytes.search = body + rows;
+    bytes.search_scratch = sizeof(scree_box) + sizeof(scree_vec3) + sizeof(scree_real) + tree;
+    // ids, rows, batch, first contact now and in the step before
+    bytes.pair = sizeof(scree_candidate_pair) + 2 * sizeof(int32_t) + sizeof(int32_t) + 2 * sizeof(int32_t);
+    bytes.pair_scratch = 2 * sizeof(uint64_t);
+    if (has_meshes) bytes.mesh_pair = sizeof(scree_pair_memory) + 2 * sizeof(int32_t);
     if ((has_spheres || has[SCREE_KIND_CLUMP]) && (has_meshes || s->num_walls > 0))
         bytes.sphere_mesh_pair = sizeof(scree_near_nodes) + 3 * sizeof(scree_sphere_contact);
-    bytes.contact = (size_t)scree_contact_list_bytes(&s->contacts) + sizeof(int32_t) + 1;
-    if (has_meshes)
-        bytes.contact += sizeof(scree_kept_overlap) + (s->contacts.has_no_levers ? 0 : sizeof(scree_kept_lever));
+    bytes.contact_block = (size_t)scree_contact_list_block_bytes(&s->contacts);
+    bytes.contact = (size_t)scree_contact_list_bytes(&s->contacts) - bytes.contact_block + sizeof(int32_t) + 1;
+    if (has_meshes && !s->contacts.has_no_levers) bytes.contact += sizeof(scree_kept_lever);
     for (int32_t k = 0; k < 2 * s->num_shapes; ++k) bytes.shapes += scree_shape_view_bytes(s->shape_views + k);
+    return bytes;
+}
+
+scree_plan_bytes scree_plan_added_up(scree_plan_bytes bytes, int64_t num_particles, int64_t num_pairs,
+                                     int64_t num_contacts)
+{
+    const double search =
+        (double)bytes.search_scratch * (double)num_particles + (double)bytes.pair_scratch * (double)num_pairs;
+    if (search > (double)bytes.contact_block * (double)num_contacts)
+    {
+        bytes.search += bytes.search_scratch;
+        bytes.pair += bytes.pair_scratch;
+    }
+    else bytes.contact += bytes.contact_block;
+    bytes.search_scratch = bytes.pair_scratch = bytes.contact_block = 0;
     return bytes;
 }
 
@@ -69,7 +86,8 @@ static void print_narrow_phase(const scree_simulation *s, const scree_plan_bytes
     if (has[SCREE_KIND_SPHERE]) print_stage(out, stage, "spheres with each other: closed form", 0, "");
     if (has_clumps)
         print_stage(out, has[SCREE_KIND_SPHERE] ? "" : stage, "clumps: closed form of their spheres", 0, "");
-    print_stage(out, "contacts", "sorted by pair, and the history of the step before", bytes->contact, "contact");
+    print_stage(out, "contacts", "sorted by pair, and the history of the step before",
+                bytes->contact + bytes->contact_block, "contact");
 }
 
 /// What the laws of the scene bring along.
@@ -123,8 +141,8 @@ void scree_simulation_print_plan(const scree_simulation *simulation, void *strea
     if (is_moving) print_stage(out, "walls", "some walls move as prescribed", 0, "");
     snprintf(text, sizeof text, "LBVH over boxes with a skin of %.3g m; reused until it is used up",
              (double)s->buffers->skin);
-    print_stage(out, "neighbours", text, bytes.search, "particle");
-    print_stage(out, "", "candidate pairs and their rows", bytes.pair, "pair");
+    print_stage(out, "neighbours", text, bytes.search + bytes.search_scratch, "particle");
+    print_stage(out, "", "candidate pairs and their rows", bytes.pair + bytes.pair_scratch, "pair");
     print_narrow_phase(s, &bytes, out);
     describe_forces(s, text, sizeof text);
     print_stage(out, "forces", text, 0, "");
@@ -133,11 +151,14 @@ void scree_simulation_print_plan(const scree_simulation *simulation, void *strea
     print_stage(out, "work", "energy balance and critical time step", 0, "");
     if (is_moving) print_stage(out, "loads", "torque, force and work of the moving walls", 0, "");
     print_averages(s, out);
-    const double particles = (double)s->particles.num_particles * (double)(bytes.state + bytes.search);
-    const double pairs = (double)s->broad_phase.num_pairs * (double)(scree_plan_largest_pair(&bytes) + bytes.contact);
+    const int64_t num_pairs = s->broad_phase.num_pairs;
+    const scree_plan_bytes all = scree_plan_added_up(bytes, s->particles.num_particles, num_pairs, num_pairs);
+    const double particles = (double)s->particles.num_particles * (double)(all.state + all.search);
+    const double pairs = (double)num_pairs * (double)(scree_plan_largest_pair(&all) + all.contact);
     fprintf(out,
-            "  memory now about %.3g MB for %lld candidate pairs, all of them as contacts, and %.3g MB for shapes\n",
-            (particles + pairs) / 1e6, (long long)s->broad_phase.num_pairs, (double)bytes.shapes / 1e6);
+            "  memory now about %.3g MB for %lld candidate pairs, all of them as contacts, and %.3g MB for shapes;\n"
+            "  a search of candidates works in that of the contacts\n",
+            (particles + pairs) / 1e6, (long long)num_pairs, (double)bytes.shapes / 1e6);
 }
 
 void scree_simulation_print_device_memory(const scree_simulation *simulation, scree_device *device, void *stream)

@@ -48,6 +48,7 @@ struct scree_simulation
     scree_stage_clock clock; ///< off unless somebody asks
 
     // scratch
+    scree_scratch scratch;           ///< of a search of candidate pairs, and then of the contacts
     scree_contact_list old_contacts; ///< of the step before, for the history
     scree_broad_phase broad_phase;
     scree_narrow_phase narrow_phase;

@@ -65,9 +65,6 @@ scree_status scree_step_buffers_create(scree_simulation *simulation)
     SCREE_ALLOCATE(last_pose, num_bodies)
     SCREE_ALLOCATE(travel, num_bodies)
     SCREE_ALLOCATE(old_groups, 2 * num_bodies)
-    SCREE_ALLOCATE(boxes, num_particles)
-    SCREE_ALLOCATE(centres, num_particles)
-    SCREE_ALLOCATE(radii, num_particles)
     SCREE_ALLOCATE(broad_phase_walls, num_walls)
     SCREE_ALLOCATE(wall_input, num_walls)
 #undef SCREE_ALLOCATE
@@ -97,27 +94,10 @@ void scree_step_buffers_destroy(scree_simulation *simulation)
     scree_step_buffers *b = simulation->buffers;
     if (b == NULL) return;
     scree_device *device = b->device;
-    void *const arrays[] = {b->pose,
-                            b->moving,
-                            b->shape,
-                            b->inverse_radius,
-                            b->searched_pose,
-                            b->last_pose,
-                            b->travel,
-                            b->boxes,
-                            b->centres,
-                            b->radii,
-                            b->moving_wall,
-                            b->wall_axes,
-                            b->broad_phase_walls,
-                            b->work_sums,
-                            b->load_sums,
-                            b->old_groups,
-                            b->old_of_contact,
-                            b->is_continued,
-                            b->sides,
-                            b->wall_motion,
-                            b->board};
+    void *const arrays[] = {b->pose,      b->moving,      b->shape,       b->inverse_radius, b->searched_pose,
+                            b->last_pose, b->travel,      b->moving_wall, b->wall_axes,      b->broad_phase_walls,
+                            b->work_sums, b->load_sums,   b->old_groups,  b->old_of_contact, b->is_continued,
+                            b->sides,     b->wall_motion, b->board};
     for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; ++k) scree_device_free(device, arrays[k]);
     scree_forget_recordings(b);
     scree_device_free_host(device, b->board_here);

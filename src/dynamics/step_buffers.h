@@ -24,9 +24,6 @@ typedef struct scree_step_buffers
     scree_pose *last_pose;     ///< (num_bodies) poses of the last step
     bool has_travel;           ///< some particles are meshes, so travel is kept
     scree_real *travel;        ///< [m] (num_bodies) bound of the way of any point of the body since the last search
-    scree_box *boxes;          ///< (num_particles)
-    scree_vec3 *centres;       ///< (num_particles)
-    scree_real *radii;         ///< (num_particles)
     scree_broad_phase_wall *broad_phase_walls; ///< (num_walls)
     scree_broad_phase_wall *wall_input;        ///< (num_walls) the same, of the last search, on the CPU
     scree_real skin;                           ///< [m] of the last search

@@ -33,7 +33,7 @@ KERNELS = [
     ("scree_travel", "particle", "src/dynamics/neighbour_kernel.h",
      dict(own="shape:int32 pose:pose searched_pose:pose last_pose:pose*2 travel:real*2"), 320),
     ("scree_mesh_apart", "pair", "src/contact/mesh_pairs_kernel.h",
-     dict(own="batch:int32 active:int32 first_of_pair:int32 pairs:pair memory:memory", near="travel:real", far="travel:real"), 30),
+     dict(own="active:int32 first_of_pair:int32 pairs:pair memory:memory", near="travel:real", far="travel:real"), 30),
     ("scree_overlap_pairs", "contact", "src/contact/overlap_pairs_kernel.h",
      dict(own="active:int32 pairs:pair memory:memory*2", near="pose:pose shape:int32", far="pose:pose shape:int32"),
      13925),
@@ -71,8 +71,8 @@ KERNELS = [
 SPHERE_KERNELS = [
     ("scree_place_spheres", "particle", "src/contact/sphere_pairs_kernel.h", dict(own="shape:int32 pose:pose spheres:sphere"), None),
     ("scree_sphere_sphere_count", "pair", "src/contact/sphere_pairs_kernel.h",
-     dict(own="batch:int32 pairs:pair first_of_pair:int32", near="spheres:sphere", far="spheres:sphere"), None),
-    ("scree_sphere_sphere_write", "pair", "src/contact/sphere_pairs_kernel.h", dict(own="batch:int32 first_of_pair:int32"), None),
+     dict(own="pairs:pair first_of_pair:int32", near="spheres:sphere", far="spheres:sphere"), None),
+    ("scree_sphere_sphere_write", "pair", "src/contact/sphere_pairs_kernel.h", dict(own="first_of_pair:int32"), None),
     ("scree_sphere_sphere_write, per contact", "contact", "src/contact/sphere_pairs_kernel.h",
      dict(own="pairs:pair bodies:pair patch:int32 volume:real indentation:real normal:vec3 arm:vec3", near="spheres:sphere", far="spheres:sphere"),
      None),
@@ -85,7 +85,7 @@ NOT_IN_POINTS = {"radius", "moment", "torsion", "is_turning"}
 NODES, BOXES = 82, 15
 SEARCH_KERNELS = [
     ("scree_pair_keep", "pair", "src/contact/pair_memory_kernel.h",
-     dict(own="batch:int32 pairs:pair memory:memory*2 kept_i:int32 kept_j:int32", near="travel:real", far="travel:real"), None),
+     dict(own="pairs:pair memory:memory*2 kept_i:int32 kept_j:int32", near="travel:real", far="travel:real"), None),
     ("scree_boxes", "particle", "src/dynamics/neighbour_kernel.h",
      dict(own="shape:int32 pose:pose boxes:box centres:vec3 radii:real"), 411),
     ("scree_lbvh_bounds", "particle", "src/bvh/lbvh_build_kernel.h", dict(own="boxes:box"), 33),
@@ -116,12 +116,12 @@ SEARCH_KERNELS = [
     ("scree_pair_flag", "pair", "src/contact/pair_kinds_kernel.h",
      dict(own="pairs:pair*4 places:int32*4", near="shape:int32*4", far="shape:int32*4"), 99),
     ("scan of kinds", "pair", None, dict(own="places:int32*12"), 40),
-    ("scree_pair_scatter", "pair", "src/contact/pair_kinds_kernel.h", dict(own="places:int32 batch:int32"), 11),
     ("scree_group_bounds", "pair", "src/contact/pair_groups_kernel.h",
      dict(own="first:int32", near="begin:int32*2 end:int32*2"), None),
-    # sorted as before, so the old place is next to that of the pair before; end: and the beginning of the group
+    # sorted as before, so the old place is next to that of the pair before; end: and the beginning of the group; what is
+    # known of the new pairs is copied to the place of the old
     ("scree_pair_carry", "pair", "src/contact/pair_memory_kernel.h",
-     dict(own="batch:int32 pairs:pair memory:memory old_memory:memory second:int32", near="end:int32*2"), None),
+     dict(own="pairs:pair memory:memory*3 old_memory:memory second:int32", near="end:int32*2"), None),
 ]
 # of meshes only
 FOR_MESHES = ("scree_pair_keep", "scree_group_bounds", "scree_pair_carry")

@@ -22,9 +22,9 @@
     X(area_vector, false, !list->acts_in_points && !list->has_no_levers)    \
     X(torque_vector, false, !list->acts_in_points && !list->has_no_levers)  \
     X(bodies, true, true)                                                   \
-    X(patch, true, true)                                                    \
+    X(patch, !list->is_one_per_pair, true)                                  \
     X(radius, true, !list->acts_in_points)                                  \
-    X(arm, true, true)                                                      \
+    X(arm, !list->is_one_per_pair, true)                                    \
     X(spring_force, true, true)                                             \
     X(tangential_stiffness, true, true)                                     \
     X(torsion, true, !list->acts_in_points)                                 \
@@ -159,7 +159,7 @@ int64_t scree_contact_list_room(const scree_contact_list *list)
 
 void scree_contact_list_pass_on(scree_contact_list *present, scree_contact_list *history)
 {
-    const scree_contact_list was = *present;
+    const scree_contact_list was = *present, *list = &was;
 #define SCREE_EXCHANGE(array, is_carried, is_used) \
     if (is_carried)                                \
     {                                              \
@@ -183,6 +183,7 @@ void scree_contact_list_share_uses(scree_contact_list *to, const scree_contact_l
     to->acts_in_points = from->acts_in_points;
     to->has_no_levers = from->has_no_levers;
     to->has_no_rolling = from->has_no_rolling;
+    to->is_one_per_pair = from->is_one_per_pair;
 }
 
 scree_status scree_contact_list_copy(scree_contact_list *to, const scree_contact_list *from)

@@ -13,7 +13,7 @@
 
 /// Owns its arrays, all (num_contacts) unless stated. Start from {0}, or from {.device = ...} for a list on a GPU.
 /// i < j; j may be a wall (id num_particles + w). Vectors in world axes. What a scene has no use for stays zero, is
-/// not touched, takes no memory, and is NULL on a GPU; the arrays marked + are what is known of the step before.
+/// not touched, takes no memory, and is NULL on a GPU; the arrays marked + and ++ are what is known of the step before.
 typedef struct scree_contact_list
 {
     int64_t num_contacts;
@@ -28,11 +28,12 @@ typedef struct scree_contact_list
     bool acts_in_points;    ///< all bodies are spheres and no law has moments: no use for arrays with *
     bool has_no_levers;     ///< no law asks for the shape of the overlap: no use for arrays with **
     bool has_no_rolling;    ///< no law has rolling resistance: no use for rolling_moment
+    bool is_one_per_pair;   ///< no pair has several contacts: arrays with ++ are as those without +
     int32_t *first_of_pair; ///< (num_pairs + 1) contacts of candidate pair p are first_of_pair[p] .. [p + 1] - 1
 
     // geometry, from the narrow phase
     scree_candidate_pair *bodies; ///< +
-    int32_t *patch;               ///< + part << SCREE_PATCH_BITS, plus 0, 1, ... within the part
+    int32_t *patch;               ///< ++ part << SCREE_PATCH_BITS, plus 0, 1, ... within the part
     scree_real *volume;           ///< [m^3]
     scree_real *indentation;      ///< [m]
     scree_real *radius;        ///< + * [m] of the contact across the normal, about the contact point; 0 for a sphere's
@@ -40,7 +41,7 @@ typedef struct scree_contact_list
     scree_vec3 *normal;        ///< [1] unit, from j towards i
     scree_vec3 *area_vector;   ///< * ** [m^2] area of i's surface inside j, outward from i; 0 for a sphere's contact
     scree_vec3 *torque_vector; ///< * ** [m^3] sum of x cross area vector over the same part, x from the contact point
-    scree_vec3 *arm;           ///< + [m] contact point minus position of i
+    scree_vec3 *arm;           ///< ++ [m] contact point minus position of i
 
     // forces, from the force law
     scree_vec3 *normal_force;     ///< [N] on i; that on j is the exact opposite
@@ -61,11 +62,12 @@ typedef struct scree_contact_list
     scree_real *spring_energy;        ///< + [J] of the tangential, the torsion and the rolling spring
 } scree_contact_list;
 
-/// The list as kernels get it: they have no use for the device.
+/// The list as kernels get it: they have no use for the device and the owner of its memory.
 SCREE_FN scree_contact_list scree_contact_list_view(const scree_contact_list *list)
 {
     scree_contact_list view = *list;
     view.device = NULL;
+    view.scratch = NULL;
     return view;
 }
 

@@ -35,7 +35,7 @@ SCREE_LANES_FUNCTION static bool is_unchanged(const scree_history_match_args *a,
         wrong[0] |= (first[p + 1] - first[p]) >> 1;
     }
     for (int l = 1; l < SCREE_LANES; ++l) wrong[0] |= wrong[l];
-    if (wrong[0] != 0) return false;
+    if (wrong[0] != 0 || a->old_patch == NULL) return wrong[0] == 0;
 
     const int32_t *patch = a->patch + first[0], *old_patch = a->old_patch + old_first[0];
     const int64_t num_contacts = first[num] - first[0];

@@ -15,7 +15,7 @@ typedef struct scree_history_match_args
     const int32_t *old_first_of_pair;  ///< (num_pairs + 1) old contacts of each, or NULL if the pairs have changed
     scree_pair_groups old_groups;      ///< of the old contacts; only then
     const int32_t *patch;              ///< (num_contacts)
-    const int32_t *old_patch;          ///< (num_old)
+    const int32_t *old_patch;          ///< (num_old) NULL: no pair has several contacts, now or then
     const scree_vec3 *arm;             ///< (num_contacts)
     const scree_vec3 *old_arm;         ///< (num_old)
     int32_t *old_of_contact;           ///< (num_contacts) out: old contact or -1
@@ -40,6 +40,12 @@ SCREE_FN bool scree_history_same_part(int32_t patch, int32_t old_patch)
 SCREE_FN void scree_history_match_pair(scree_history_match_args a, int64_t p, int32_t old_begin, int32_t old_end)
 {
     const int32_t begin = a.first_of_pair[p], end = a.first_of_pair[p + 1];
+    if (!a.old_patch)
+    {
+        a.old_of_contact[begin] = old_begin < old_end ? old_begin : -1;
+        if (old_begin < old_end) a.is_continued[old_begin] = 1;
+        return;
+    }
     if (end - begin == 1 && old_end - old_begin == 1 && scree_history_same_part(a.patch[begin], a.old_patch[old_begin]))
     {
         a.old_of_contact[begin] = old_begin;

@@ -26,7 +26,7 @@ typedef struct scree_mesh_pairs_args
 {
     scree_bodies bodies;
     const scree_candidate_pair *pairs; ///< (num_pairs) all candidate pairs
-    const int32_t *batch;              ///< (num in batch) indices of those of two meshes
+    const int32_t *batch;              ///< (num in batch) indices of those of two meshes; NULL: all
     scree_pair_memory *memory;         ///< (num in batch)
     int32_t *active; ///< (classes.last - classes.first + 1, max_active) entries that may touch, by class, in any order
     int64_t max_active;
@@ -96,7 +96,7 @@ SCREE_FN bool scree_pair_is_apart(const scree_bodies *bodies, scree_candidate_pa
 /// Entry m of the batch: no contacts, or among those to be looked at.
 SCREE_FN void scree_mesh_apart_at(scree_mesh_apart_args a, int64_t m)
 {
-    const int32_t p = a.batch[m];
+    const int32_t p = scree_pair_of_batch(a.batch, m);
     a.list.first_of_pair[p] = 0;
     if (scree_pair_is_apart(&a.bodies, a.pairs[p], a.memory + m, a.use)) return;
     const int32_t work_class = scree_work_class_of_pair(&a, a.pairs[p]);
@@ -125,7 +125,7 @@ SCREE_FN scree_vec3 scree_known_direction(const scree_mesh_pairs_args *a, int32_
 
 SCREE_FN bool scree_is_pair_lost(const scree_mesh_pairs_args *a, int32_t m, const scree_overlap_result *result)
 {
-    const scree_candidate_pair pair = a->pairs[a->batch[m]];
+    const scree_candidate_pair pair = a->pairs[scree_pair_of_batch(a->batch, m)];
     const scree_bodies *bodies = &a->bodies;
     return scree_overlap_is_lost(result,
                                  bodies->shapes[bodies->shape[pair.i]].bounding_radius * bodies->pose[pair.i].scale,
@@ -148,7 +148,7 @@ SCREE_FN void scree_mesh_pair_note(const scree_mesh_pairs_args *a, int32_t m, co
     }
     a->memory[m].apart_until = results[0].status != SCREE_OVERLAP_NONE ? SCREE_PAIR_TOUCHED : 0;
     if (results[0].status == SCREE_OVERLAP_TOUCHING) scree_pack_direction(results[0].normal, a->memory[m].direction);
-    a->list.first_of_pair[a->batch[m]] = num_contacts;
+    a->list.first_of_pair[scree_pair_of_batch(a->batch, m)] = num_contacts;
     if (num_contacts == 0) return;
     int64_t k = scree_atomic_count(&a->tally->num_kept, num_contacts);
     if (k + num_contacts > a->max_kept) return;
@@ -163,7 +163,7 @@ SCREE_FN void scree_mesh_gap_at(scree_mesh_gap_args a, int64_t m)
 {
     const int64_t num_steps = a.bodies.num_steps;
     if (a.memory[m].apart_until != 0 || (num_steps > 0 && (num_steps + m) % SCREE_GAP_EVERY != 0)) return;
-    const scree_candidate_pair pair = a.pairs[a.batch[m]];
+    const scree_candidate_pair pair = a.pairs[scree_pair_of_batch(a.batch, m)];
     const scree_shape_view *shape_i = a.bodies.shapes + a.bodies.shape[pair.i];
     const scree_shape_view *shape_j = a.bodies.shapes + a.bodies.shape[pair.j];
     const scree_pose *pose_i = a.bodies.pose + pair.i, *pose_j = a.bodies.pose + pair.j;
@@ -178,7 +178,7 @@ SCREE_FN void scree_mesh_gap_at(scree_mesh_gap_args a, int64_t m)
 /// Touching results of entry m to the list.
 SCREE_FN void scree_mesh_write_at(scree_mesh_write_args a, int64_t m)
 {
-    const int32_t p = a.batch[m];
+    const int32_t p = scree_pair_of_batch(a.batch, m);
     const int64_t begin = a.list.first_of_pair[p], end = a.list.first_of_pair[p + 1];
     for (int64_t c = begin; c < end; ++c)
     {

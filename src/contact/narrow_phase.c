@@ -12,8 +12,9 @@
 /// The pairs of one kind, in the order of all candidate pairs.
 typedef struct pair_batch
 {
-    int32_t *pairs; ///< (num) indices of candidate pairs
+    int32_t *pairs; ///< (num) indices of candidate pairs, (max) room
     int64_t num, max;
+    bool is_all; ///< of all candidate pairs: the indices are not needed
 } pair_batch;
 
 /// Results of the pairs before they are compacted into the list. Nothing is kept for two spheres.
@@ -50,6 +51,9 @@ struct scree_narrow_phase_buffers
     int64_t max_sphere_mesh_pairs;
     int32_t max_found; ///< per pair
 };
+
+/// The indices as kernels get them.
+static const int32_t *indices_of(const pair_batch *batch) { return batch->is_all ? NULL : batch->pairs; }
 
 void scree_narrow_phase_destroy(scree_narrow_phase *narrow_phase)
 {
@@ -94,7 +98,7 @@ void scree_narrow_phase_carry(scree_narrow_phase *narrow_phase, const scree_bodi
     memset(&args, 0, sizeof args); // the gaps between its members too
     args.bodies = *bodies;
     args.pairs = pairs;
-    args.batch = batch->pairs;
+    args.batch = indices_of(batch);
     args.memory = b->memory;
     args.kept_i = b->first_kept;
     args.kept_j = b->active;
@@ -169,6 +173,8 @@ static scree_status reserve_kept(scree_narrow_phase *narrow_phase, scree_contact
     return scree_device_reserve_only(narrow_phase->device, &b->kept_levers, &b->max_levers, list->max_contacts,
                                      sizeof *b->kept_levers);
 }
+
+_Static_assert(sizeof(scree_kept_overlap) <= 3 * sizeof(scree_vec3), "the forces of a contact have room for it");
 
 /// Overlaps that there is room for.
 static int64_t max_kept(const scree_narrow_phase *narrow_phase, const scree_contact_list *list)
@@ -270,7 +276,7 @@ static scree_status take_memory(const search *s)
     scree_pair_carry_args args;
     memset(&args, 0, sizeof args); // the gaps between its members too
     args.pairs = s->pairs;
-    args.batch = batch->pairs;
+    args.batch = indices_of(batch);
     args.memory = memory;
     args.kept = kept;
     args.old_memory = b->memory;
@@ -290,7 +296,7 @@ static scree_sphere_pairs_args sphere_args(const search *s, scree_pair_kind kind
     args.shape = s->bodies.shape;
     args.pose = s->bodies.pose;
     args.pairs = s->pairs;
-    args.batch = b->batches[kind].pairs;
+    args.batch = indices_of(b->batches + kind);
     args.list = scree_contact_list_view(s->list);
     args.near = b->near;
     args.reach = s->narrow_phase->separation.bounds ? s->bodies.reach : 0;
@@ -327,7 +333,8 @@ static scree_status sort_pairs(const search *s)
         int32_t num = 0;
         scree_device_read(device, &num, args.places + s->num_pairs, sizeof num);
         batch->num = num;
-        if (batch->num == 0) continue;
+        batch->is_all = batch->num == s->num_pairs;
+        if (batch->num == 0 || batch->is_all) continue;
         status = scree_device_reserve(device, &batch->pairs, &batch->max, batch->num, sizeof *batch->pairs);
         if (status != SCREE_OK) return status;
         args.batch = batch->pairs;
@@ -348,7 +355,7 @@ static scree_mesh_pairs_args mesh_args(const search *s)
     memset(&args, 0, sizeof args); // the gaps between its members too: a launch passes them on
     args.bodies = s->bodies;
     args.pairs = s->pairs;
-    args.batch = b->batches[SCREE_PAIR_MESH_MESH].pairs;
+    args.batch = indices_of(b->batches + SCREE_PAIR_MESH_MESH);
     args.memory = b->memory;
     args.active = b->active;
     args.max_active = b->max_mesh_pairs;

@@ -24,6 +24,9 @@ typedef struct scree_bodies
     scree_real reach;  ///< [m] two bodies come closer by no more than this until pairs are forgotten; 0: not known
 } scree_bodies;
 
+/// Candidate pair of entry b of a batch; NULL stands for a batch of all pairs.
+SCREE_FN int32_t scree_pair_of_batch(const int32_t *batch, int64_t b) { return batch ? batch[b] : (int32_t)b; }
+
 /// Work that is avoided for pairs of meshes that do not touch. All false: every pair goes to the overlap.
 typedef struct scree_separation_use
 {

@@ -27,7 +27,7 @@ SCREE_FN void scree_overlap_of_pair(const scree_overlap_pairs_args *a, const scr
 {
     const scree_mesh_pairs_args *meshes = &a->meshes;
     const int32_t *active = scree_active_of_class(meshes, a->work_class);
-    const int32_t p = meshes->batch[active[k]];
+    const int32_t p = scree_pair_of_batch(meshes->batch, active[k]);
     const int32_t body[2] = {meshes->pairs[p].i, meshes->pairs[p].j};
     scree_overlap_pair pair;
     for (int32_t side = 0; side < 2; ++side)

@@ -73,7 +73,7 @@ typedef struct scree_pair_keep_args
 {
     scree_bodies bodies;               ///< as they are now, with their travels since the search before
     const scree_candidate_pair *pairs; ///< all candidate pairs
-    const int32_t *batch;              ///< (num) indices of those of two meshes
+    const int32_t *batch;              ///< (num) indices of those of two meshes; NULL: all
     scree_pair_memory *memory;         ///< (num)
     int32_t *kept_i, *kept_j;          ///< (num) out
 } scree_pair_keep_args;
@@ -88,7 +88,7 @@ SCREE_FN scree_real scree_travel_error(const scree_bodies *bodies, int32_t i)
 
 SCREE_FN void scree_pair_keep_at(scree_pair_keep_args a, int64_t m)
 {
-    const scree_candidate_pair pair = a.pairs[a.batch[m]];
+    const scree_candidate_pair pair = a.pairs[scree_pair_of_batch(a.batch, m)];
     a.kept_i[m] = pair.i;
     a.kept_j[m] = pair.j;
     if (!(a.memory[m].apart_until > 0)) return;
@@ -102,7 +102,7 @@ SCREE_FN void scree_pair_keep_at(scree_pair_keep_args a, int64_t m)
 typedef struct scree_pair_carry_args
 {
     const scree_candidate_pair *pairs;   ///< all candidate pairs
-    const int32_t *batch;                ///< (num) indices of those of two meshes
+    const int32_t *batch;                ///< (num) indices of those of two meshes; NULL: all
     scree_pair_memory *memory;           ///< (num) out
     scree_pair_groups kept;              ///< (num_kept) the pairs before
     const scree_pair_memory *old_memory; ///< (num_kept)
@@ -110,7 +110,7 @@ typedef struct scree_pair_carry_args
 
 SCREE_FN void scree_pair_carry_at(scree_pair_carry_args a, int64_t m)
 {
-    const scree_candidate_pair pair = a.pairs[a.batch[m]];
+    const scree_candidate_pair pair = a.pairs[scree_pair_of_batch(a.batch, m)];
     const int32_t old = scree_group_find(&a.kept, pair.i, pair.j);
     scree_pair_memory memory;
     memory.direction[0] = memory.direction[1] = 0;

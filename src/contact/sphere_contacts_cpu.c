@@ -27,10 +27,12 @@ static void load_group(scree_sphere_group *restrict g, const scree_sphere_pairs_
     scree_lanes_gather(&g->centre_j, g->radius_j, a->spheres, sizeof *a->spheres, g->j);
 }
 
-/// Which of a group of pairs touch.
-SCREE_LANES_FUNCTION static void count_group(const scree_sphere_pairs_args *a, const int32_t *p)
+/// Which of a group of pairs touch: entries of the batch from b on.
+SCREE_LANES_FUNCTION static void count_group(const scree_sphere_pairs_args *a, int64_t b)
 {
     scree_sphere_group g;
+    int32_t p[SCREE_LANES];
+    for (int l = 0; l < SCREE_LANES; ++l) p[l] = scree_pair_of_batch(a->batch, b + l);
     load_group(&g, a, p);
     int32_t num[SCREE_LANES];
     for (int l = 0; l < SCREE_LANES; ++l)
@@ -45,7 +47,7 @@ void scree_sphere_sphere_count_launch(scree_sphere_sphere_count_args args, int64
 {
     const int64_t num_groups = num / SCREE_LANES;
 #pragma omp parallel for schedule(static) if (num >= SCREE_LAUNCH_MIN)
-    for (int64_t k = 0; k < num_groups; ++k) count_group(&args, args.batch + k * SCREE_LANES);
+    for (int64_t k = 0; k < num_groups; ++k) count_group(&args, k * SCREE_LANES);
     for (int64_t b = num_groups * SCREE_LANES; b < num; ++b) scree_sphere_sphere_count_at(args, b);
 }
 

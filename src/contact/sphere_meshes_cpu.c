@@ -99,7 +99,7 @@ static bool is_local_minimum(const gathered_spheres *gathered, const gathered_sp
 /// Contacts of a gathered sphere, added to those of its pair.
 static void add_contacts(const scree_sphere_pairs_args *a, gathered_spheres *gathered, const gathered_sphere *sphere)
 {
-    int32_t *num = a->list.first_of_pair + a->batch[sphere->b];
+    int32_t *num = a->list.first_of_pair + scree_pair_of_batch(a->batch, sphere->b);
     const int32_t first = *num < a->max_found ? *num : a->max_found;
     scree_sphere_contact *found = a->found + sphere->b * a->max_found + first;
     const scree_real radius = sphere->on_mesh.radius;
@@ -132,12 +132,12 @@ static void add_all(const scree_sphere_pairs_args *a, gathered_spheres *gathered
 /// Entry b of the batch.
 static void gather_pair(const scree_sphere_pairs_args *a, gathered_spheres *gathered, int64_t b)
 {
-    const scree_candidate_pair pair = a->pairs[a->batch[b]];
+    const scree_candidate_pair pair = a->pairs[scree_pair_of_batch(a->batch, b)];
     const bool is_first = a->shapes[a->shape[pair.i]].kind != SCREE_KIND_MESH;
     const int32_t body = is_first ? pair.i : pair.j, mesh = is_first ? pair.j : pair.i;
     const scree_shape_view *shape = a->shapes + a->shape[mesh];
     const scree_near_nodes *near = a->near + b;
-    a->list.first_of_pair[a->batch[b]] = 0;
+    a->list.first_of_pair[scree_pair_of_batch(a->batch, b)] = 0;
     if (near->num == 0) return;
     if (shape->tree.nodes[near->node[0]].first_child >= 0)
     {

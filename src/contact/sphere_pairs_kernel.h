@@ -47,7 +47,7 @@ typedef struct scree_sphere_pairs_args
     const int32_t *shape;              ///< (num_bodies)
     const scree_pose *pose;            ///< (num_bodies)
     const scree_candidate_pair *pairs; ///< (num_pairs) all candidate pairs
-    const int32_t *batch;              ///< (num) indices of those that this launch is for
+    const int32_t *batch;              ///< (num) indices of those that this launch is for; NULL: all
     scree_contact_list list;           ///< first pass: number of contacts to first_of_pair; second: geometry written
 
     // spheres and clumps on meshes
@@ -70,7 +70,7 @@ typedef scree_sphere_pairs_args scree_clump_clump_write_args;
 
 SCREE_FN void scree_sphere_sphere_count_at(scree_sphere_sphere_count_args a, int64_t b)
 {
-    const int32_t p = a.batch[b];
+    const int32_t p = scree_pair_of_batch(a.batch, b);
     const scree_sphere i = a.spheres[a.pairs[p].i], j = a.spheres[a.pairs[p].j];
     a.list.first_of_pair[p] = scree_spheres_touch(scree_vec3_sub(i.centre, j.centre), i.radius + j.radius) ? 1 : 0;
 }
@@ -128,7 +128,7 @@ SCREE_FN void scree_write_sphere_pair(scree_contact_list list, int32_t p, scree_
 
 SCREE_FN void scree_sphere_sphere_write_at(scree_sphere_sphere_write_args a, int64_t b)
 {
-    const int32_t p = a.batch[b];
+    const int32_t p = scree_pair_of_batch(a.batch, b);
     if (a.list.first_of_pair[p + 1] == a.list.first_of_pair[p]) return;
     const scree_candidate_pair pair = a.pairs[p];
     scree_write_sphere_pair(a.list, p, pair, scree_touching_pair(a.spheres[pair.i], a.spheres[pair.j]));
@@ -165,7 +165,7 @@ SCREE_FN void scree_find_near_nodes(scree_near_nodes *near, const scree_shape_vi
 /// After a search of pairs. A clump stays within its bounding sphere, however it turns.
 SCREE_FN void scree_sphere_mesh_near_at(scree_sphere_mesh_near_args a, int64_t b)
 {
-    const scree_candidate_pair pair = a.pairs[a.batch[b]];
+    const scree_candidate_pair pair = a.pairs[scree_pair_of_batch(a.batch, b)];
     const bool is_first = a.shapes[a.shape[pair.i]].kind != SCREE_KIND_MESH;
     const int32_t body = is_first ? pair.i : pair.j, mesh = is_first ? pair.j : pair.i;
     const scree_shape_view *shape = a.shapes + a.shape[mesh];
@@ -182,11 +182,11 @@ SCREE_FN void scree_sphere_mesh_near_at(scree_sphere_mesh_near_args a, int64_t b
 
 SCREE_FN void scree_sphere_mesh_count_at(scree_sphere_mesh_count_args a, int64_t b)
 {
-    const scree_candidate_pair pair = a.pairs[a.batch[b]];
+    const scree_candidate_pair pair = a.pairs[scree_pair_of_batch(a.batch, b)];
     const bool is_first = a.shapes[a.shape[pair.i]].kind != SCREE_KIND_MESH; // is the sphere or clump
     const int32_t body = is_first ? pair.i : pair.j, mesh = is_first ? pair.j : pair.i;
     // sums are kept in memory, for the search on the mesh needs all registers
-    int32_t *num = a.list.first_of_pair + a.batch[b];
+    int32_t *num = a.list.first_of_pair + scree_pair_of_batch(a.batch, b);
     bool is_any_inside = false;
     *num = 0;
     if (a.near[b].num == 0) return;
@@ -210,7 +210,7 @@ SCREE_FN void scree_sphere_mesh_count_at(scree_sphere_mesh_count_args a, int64_t
 
 SCREE_FN void scree_sphere_mesh_write_at(scree_sphere_mesh_write_args a, int64_t b)
 {
-    const int32_t p = a.batch[b];
+    const int32_t p = scree_pair_of_batch(a.batch, b);
     const int32_t begin = a.list.first_of_pair[p];
     const int32_t num = a.list.first_of_pair[p + 1] - begin;
     if (num == 0) return;
@@ -280,12 +280,13 @@ SCREE_FN int32_t scree_clump_clump_contacts(scree_sphere_pairs_args a, int32_t p
 
 SCREE_FN void scree_clump_clump_count_at(scree_clump_clump_count_args a, int64_t b)
 {
-    a.list.first_of_pair[a.batch[b]] = scree_clump_clump_contacts(a, a.batch[b], false);
+    const int32_t p = scree_pair_of_batch(a.batch, b);
+    a.list.first_of_pair[p] = scree_clump_clump_contacts(a, p, false);
 }
 
 SCREE_FN void scree_clump_clump_write_at(scree_clump_clump_write_args a, int64_t b)
 {
-    const int32_t p = a.batch[b];
+    const int32_t p = scree_pair_of_batch(a.batch, b);
     if (a.list.first_of_pair[p + 1] > a.list.first_of_pair[p]) scree_clump_clump_contacts(a, p, true);
 }
 

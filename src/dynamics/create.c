@@ -261,6 +261,16 @@ static scree_status allocate(scree_simulation *s)
     return is_complete ? SCREE_OK : SCREE_OUT_OF_MEMORY;
 }
 
+/// Several contacts of a pair are those of the spheres of clumps, of a sphere on a mesh, and of patches told apart.
+static bool has_one_contact_per_pair(const scree_simulation *s)
+{
+    bool has[SCREE_NUM_SHAPE_KINDS] = {false};
+    for (int64_t i = 0; i < s->particles.num_particles; ++i) has[s->shape_views[s->particles.shape[i]].kind] = true;
+    const bool has_meshes = has[SCREE_KIND_MESH];
+    return !has[SCREE_KIND_CLUMP] && !(has[SCREE_KIND_SPHERE] && (has_meshes || s->num_walls > 0)) &&
+           !(has_meshes && s->scene->solver.separate_patches);
+}
+
 /// What the contacts of the scene have no use for. Every contact acts in a point if all particles are spheres, and no
 /// law has a moment of its own for them.
 static void choose_contact_arrays(scree_simulation *s)
@@ -276,6 +286,7 @@ static void choose_contact_arrays(scree_simulation *s)
     s->contacts.acts_in_points = !has_extent && !has_rolling;
     s->contacts.has_no_levers = !has_levers;
     s->contacts.has_no_rolling = !has_rolling;
+    s->contacts.is_one_per_pair = has_one_contact_per_pair(s);
     s->old_contacts.is_history = true;
     scree_contact_list_share_uses(&s->old_contacts, &s->contacts);
 }

@@ -25,8 +25,10 @@ scree_plan_bytes scree_simulation_plan_bytes(const scree_simulation *simulation)
     const size_t rows = 4 * sizeof(int32_t) + sizeof(int64_t);
     bytes.search = body + rows;
     bytes.search_scratch = sizeof(scree_box) + sizeof(scree_vec3) + sizeof(scree_real) + tree;
-    // ids, rows, batch, first contact now and in the step before
-    bytes.pair = sizeof(scree_candidate_pair) + 2 * sizeof(int32_t) + sizeof(int32_t) + 2 * sizeof(int32_t);
+    // ids, rows, batch unless there is but one, first contact now and in the step before
+    const bool is_all = has_meshes + has_spheres + has[SCREE_KIND_CLUMP] == 1 && (has_meshes || s->num_walls == 0);
+    bytes.pair =
+        sizeof(scree_candidate_pair) + 2 * sizeof(int32_t) + (is_all ? 0 : sizeof(int32_t)) + 2 * sizeof(int32_t);
     bytes.pair_scratch = 2 * sizeof(uint64_t);
     if (has_meshes) bytes.mesh_pair = sizeof(scree_pair_memory) + 2 * sizeof(int32_t);
     if ((has_spheres || has[SCREE_KIND_CLUMP]) && (has_meshes || s->num_walls > 0))

@@ -32,9 +32,9 @@ def test_arrays_of_the_source_are_in_the_model(source):
     text = (ROOT / source).read_text()
     used = set(re.findall(r"\ba(?:->|\.)(?:\w+\.)?(\w+)\[", text))
     known = set().union(*(named(kernel) for kernel in FROM_SOURCES if kernel[2] == source))
-    # in neither a step of polyhedra nor a search: patches are those of several contacts of a pair, walls few, sums and bounds of chunks
+    # in neither a step of polyhedra nor a search: batches where all pairs are of one kind, patches are those of several contacts of a pair, walls few, sums and bounds of chunks
     # one per 256 contacts and in all, area and torque vectors are for one force law, shapes for gaps that are used up and where pairs are told apart by their work, rolling moments for rolling resistance
-    elsewhere = {"walls", "chunk_bounds", "pairs", "patch", "arm", "old_patch", "old_arm", "old_bodies", "sums",
+    elsewhere = {"batch", "walls", "chunk_bounds", "pairs", "patch", "arm", "old_patch", "old_arm", "old_bodies", "sums",
                  "area_vector", "torque_vector", "kept_levers", "shape", "shapes", "rolling_moment", "slices", "laws"}
     if source.endswith("gather_kernel.h"):
         elsewhere |= {"bodies", "normal_force", "tangential_force", "moment", "pose"}  # only where the forces leave no sides: on the CPU

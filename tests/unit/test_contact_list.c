@@ -3,6 +3,7 @@
 #include "harness.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 static void fill(scree_contact_list *list, const scree_candidate_pair *bodies, int64_t num)
 {
@@ -107,6 +108,58 @@ static scree_history_match_args match_of(const scree_contact_list *now, const sc
     return args;
 }
 
+/// Where no pair has several contacts, points and patches are not carried, and history follows the pairs all the same.
+static void test_one_contact_per_pair(void)
+{
+    scree_contact_list present = {.is_one_per_pair = true}, history = {.is_history = true}, usual = {0};
+    scree_contact_list_share_uses(&history, &present);
+    const scree_candidate_pair bodies[] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}};
+    const int32_t first[2][5] = {{0, 1, 1, 2, 3}, {0, 1, 2, 2, 3}}, expected[3] = {0, -1, 2};
+    for (int step = 0; step < 2; ++step)
+    {
+        scree_contact_list_pass_on(&present, &history);
+        fill(&present, bodies, 4);
+        present.num_contacts = 3;
+        memcpy(present.first_of_pair, first[step], sizeof first[step]);
+    }
+    SCREE_CHECK(history.patch == NULL && history.arm == NULL && history.spring_force != NULL && present.arm != NULL);
+    int32_t old_of_contact[3];
+    uint8_t is_continued[3] = {0};
+    const scree_history_match_args args = match_of(&present, &history, bodies, NULL, 0, old_of_contact, is_continued);
+    scree_history_match_launch(args, 4);
+    for (int c = 0; c < 3; ++c) SCREE_CHECK_INT(old_of_contact[c], expected[c]);
+    SCREE_CHECK(is_continued[0] == 1 && is_continued[1] == 0 && is_continued[2] == 1);
+    SCREE_CHECK_INT(scree_contact_list_bytes(&usual) - scree_contact_list_bytes(&present),
+                    (int64_t)(sizeof(int32_t) + sizeof(scree_vec3)));
+    scree_contact_list_destroy(&present);
+    scree_contact_list_destroy(&history);
+}
+
+/// The block of a list is lent to a search and taken anew from the same memory; what goes on to the next step stays.
+static void test_block_is_lent(void)
+{
+    scree_contact_list list = {0};
+    scree_scratch scratch = {0};
+    const scree_candidate_pair bodies[] = {{0, 1}, {0, 2}};
+    fill(&list, bodies, 2);
+    list.spring_energy[1] = 7;
+    scree_contact_list_lend(&list, &scratch);
+    SCREE_CHECK(list.normal == NULL && list.normal_force == NULL && list.max_contacts == 0);
+    SCREE_CHECK_INT(scree_scratch_begin(&scratch, 0), SCREE_OK);
+    char *search = scree_scratch_take(&scratch, 100000, 1);
+    memset(search, 1, 100000);
+    SCREE_CHECK_INT(scree_contact_list_reserve(&list, 2, 2), SCREE_OK);
+    SCREE_CHECK((char *)list.normal_force == search && list.max_contacts >= 2 && scratch.num_blocks == 1);
+    SCREE_CHECK(list.spring_energy[1] == 7 && list.bodies[1].j == 2 && list.first_of_pair[2] == 2);
+    // overlaps are kept where the forces will be
+    const int64_t num_spare = list.max_contacts * (int64_t)scree_contact_list_spare_bytes(&list);
+    SCREE_CHECK((char *)scree_contact_list_spare(&list) + num_spare <= (char *)list.elastic_force &&
+                (char *)list.elastic_force < (char *)list.normal &&
+                list.normal + 2 <= (scree_vec3 *)(void *)(search + 100000));
+    scree_contact_list_destroy(&list);
+    scree_scratch_destroy(&scratch);
+}
+
 /// Random old and new lists, each in an order of its own: the history found is the one that a search through all finds.
 static void test_history_follows_pairs(void)
 {
@@ -199,6 +252,8 @@ int main(void)
     SCREE_RUN(test_growth_keeps_contents);
     SCREE_RUN(test_history_is_what_the_last_step_had);
     SCREE_RUN(test_validate_finds_faults);
+    SCREE_RUN(test_one_contact_per_pair);
+    SCREE_RUN(test_block_is_lent);
     SCREE_RUN(test_history_follows_pairs);
     SCREE_RUN(test_patches_find_the_nearest);
     return SCREE_TEST_END();

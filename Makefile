@@ -1,5 +1,5 @@
 # Thin face on the CMake presets: every target works in a fresh clone.
-.PHONY: help setup program build test demo studies format clean
+.PHONY: help setup build test demo studies format clean
 .DEFAULT_GOAL := help
 
 help:
@@ -14,21 +14,17 @@ setup:
 	@tools/setup
 
 # what runs scenes, without tests
-program: setup
-	@cmake --preset release --log-level=WARNING
-	@cmake --build --preset release --target scree_program
-
 build: setup
 	@cmake --preset release --log-level=WARNING
-	@cmake --build --preset release
+	@cmake --build --preset release --target scree_program
 
 test: setup
 	@tests/run_all
 
-demo: program
+demo: build
 	@tools/demo
 
-studies: program
+studies: build
 	@tools/studies $(STUDY)
 
 format:

@@ -517,11 +517,17 @@ static int conclude_lost(run_state *run, scree_status status)
     return SCREE_EXIT_FAILED;
 }
 
+/// Does the run go on from a checkpoint that leaves it no step to do?
+static bool is_past_end(const run_state *run)
+{
+    return run->start_step > 0 && run->start_step >= scree_simulation_num_steps(run->simulation);
+}
+
 /// Last files and words; the exit code.
 static int conclude(run_state *run, scree_status status)
 {
     const bool is_quiet = run->request->is_quiet;
-    if (!is_quiet && !run->is_lost && run->shown_clock > 0)
+    if (!is_quiet && !run->is_lost && run->shown_clock > 0 && !is_past_end(run))
     {
         show_progress(run);
         if (run->is_terminal) putchar('\n');
@@ -586,6 +592,9 @@ static int run_scene(const run_request *request)
             if (run.device != NULL) printf(", steps on GPU %d, \"%s\"", request->device, scree_device_name(run.device));
             if (run.start_step > 0) printf(", from step %lld on", (long long)run.start_step);
             putchar('\n');
+            if (is_past_end(&run))
+                printf("nothing is left to do: the checkpoint is at t = %g s, time.end is %g s\n",
+                       scree_simulation_time(run.simulation), run.file.scene.time.end);
             fflush(stdout);
         }
         catch_signals();

@@ -202,17 +202,16 @@ static scree_status make_shapes(scree_simulation *s, const char *folder, scree_r
         }
 
         scree_mesh mesh = {0};
+        const int num_before = scree_report_num_faults(report);
         scree_status status = make_mesh(&mesh, scene->shapes + k, folder, report);
         if (status == SCREE_OK && is_particle)
             status = scree_shape_create(s->particle_shapes + k, &mesh, SCREE_FRAME_PRINCIPAL);
         if (status == SCREE_OK && is_wall) status = scree_shape_create(s->wall_shapes + k, &mesh, SCREE_FRAME_SOURCE);
         scree_mesh_destroy(&mesh);
-        if (status != SCREE_OK)
-        {
+        if (status != SCREE_OK && scree_report_num_faults(report) == num_before)
             scree_report_add(report, "shape \"%s\" could not be made: %s", scene->shapes[k].name,
                              scree_status_text(status));
-            worst = status;
-        }
+        if (status != SCREE_OK) worst = status;
         s->shape_views[k] = s->particle_shapes[k].view;
         s->shape_views[s->num_shapes + k] = s->wall_shapes[k].view;
     }

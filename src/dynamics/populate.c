@@ -240,6 +240,10 @@ static void make_lattice(const scree_scene *scene, region_fill *fill)
 static void tell_too_small(const scree_scene *scene, const region_fill *fill, int64_t num_cells, scree_report *report)
 {
     char cells[128], names[6 * 64] = "";
+    const bool is_narrow = fill->num[0] * fill->num[1] * fill->num[2] == 0;
+    const char *remedy = is_narrow ? "it is narrower than a cell: make it wider, or the particles smaller; all lengths "
+                                     "are in metres"
+                                   : "make the region larger, for instance higher";
     snprintf(cells, sizeof cells, "cells of %g m, %lld x %lld x %lld%s", fill->cell, (long long)fill->num[0],
              (long long)fill->num[1], (long long)fill->num[2],
              fill->cylinder == SCREE_AXIS_NONE ? "" : ", those in the cylinder");
@@ -249,9 +253,9 @@ static void tell_too_small(const scree_scene *scene, const region_fill *fill, in
         scree_report_add(
             report,
             "particles \"%s\": the region holds %lld particles of up to %g m (%s), but %lld are asked for; "
-            "make the region larger, for instance higher",
+            "%s",
             scene->particles[fill->members[0]].name, (long long)num_cells, group->diameter, cells,
-            (long long)group->num);
+            (long long)group->num, remedy);
         return;
     }
     for (int32_t m = 0; m < fill->num_members && m < MAX_NAMED; ++m)
@@ -265,8 +269,9 @@ static void tell_too_small(const scree_scene *scene, const region_fill *fill, in
     const double share = (double)num_cells / (double)num_cells_needed(fill);
     scree_report_add(report,
                      "particles %s are filled into one region together, which holds about %lld of the %lld that are "
-                     "asked for (%s); make the region larger, for instance higher",
-                     names, (long long)(share * (double)fill->num_particles), (long long)fill->num_particles, cells);
+                     "asked for (%s); %s",
+                     names, (long long)(share * (double)fill->num_particles), (long long)fill->num_particles, cells,
+                     remedy);
 }
 
 /// Mass and moments of particle i from shape, scale and density.

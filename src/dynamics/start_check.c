@@ -1,4 +1,5 @@
 #include "dynamics/start_check.h"
+#include "dynamics/time_step.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -284,11 +285,49 @@ static int64_t check_outside(const scree_simulation *s, scree_report *report, sc
     return num;
 }
 
+/// Warns, of the particle that would go deepest, if contacts are too soft for it: if it fell freely, as deep as the
+/// lowest point of any wall, it would go into what it hits by more than its radius.
+static void warn_of_soft_contacts(const scree_simulation *s, scree_report *report)
+{
+    const double *g = s->scene->gravity;
+    double lowest = -INFINITY, worst = 1;
+    int64_t worst_particle = -1;
+    for (int32_t w = 0; w < s->num_walls; ++w)
+    {
+        const scree_shape_view *shape = s->shape_views + s->num_shapes + s->walls[w].shape;
+        const scree_mat3 rotation = scree_mat3_from_quat(s->walls[w].pose.orientation);
+        for (int32_t v = 0; v < shape->num_vertices; ++v)
+        {
+            const scree_vec3 x =
+                scree_vec3_add(s->walls[w].pose.position, scree_mat3_apply(rotation, shape->vertices[v]));
+            lowest = fmax(lowest, g[0] * (double)x.x + g[1] * (double)x.y + g[2] * (double)x.z);
+        }
+    }
+    for (int64_t i = 0; i < s->particles.num_particles; ++i)
+    {
+        const scree_vec3 x = s->particles.position[i], v = s->particles.velocity[i];
+        const double fall = fmax(lowest - (g[0] * (double)x.x + g[1] * (double)x.y + g[2] * (double)x.z), 0);
+        const double energy = (double)s->particles.mass[i] * (0.5 * (double)scree_vec3_dot(v, v) + fall);
+        const double share = energy / scree_impact_capacity(s, i);
+        if (share > worst) worst_particle = i;
+        worst = fmax(worst, share);
+    }
+    if (worst_particle < 0) return;
+    scree_report_warn(
+        report,
+        "%s can fall onto others or walls with %.2g times the energy that takes a contact as deep as its "
+        "radius, and may pass through them: contacts of \"%s\" are too soft for it; raise its youngs_modulus (in Pa) "
+        "or normal_stiffness",
+        scree_describe_body(s, worst_particle).text, worst,
+        s->scene->materials[s->particles.material[worst_particle]].name);
+}
+
 scree_status scree_check_start(const scree_simulation *simulation, scree_report *report)
 {
     int64_t num_faults;
     scree_status status = scree_check_overlaps(simulation, report, &num_faults);
     if (status == SCREE_OK) num_faults += check_outside(simulation, report, &status);
     if (status != SCREE_OK) return status;
+    if (num_faults == 0) warn_of_soft_contacts(simulation, report);
     return num_faults > 0 ? SCREE_INVALID_INPUT : SCREE_OK;
 }

@@ -39,3 +39,17 @@ double scree_time_step_critical(const scree_simulation *simulation)
     }
     return sqrt(smallest_squared);
 }
+
+double scree_impact_capacity(const scree_simulation *simulation, int64_t i)
+{
+    const scree_particles *p = &simulation->particles;
+    const double radius = touching_radius(simulation->particle_shapes + p->shape[i]) * (double)p->scale[i];
+    double softest = INFINITY;
+    for (int32_t m = 0; m < simulation->num_materials; ++m)
+    {
+        const scree_force_law *law = simulation->laws + p->material[i] * simulation->num_materials + m;
+        const double stiffness = scree_force_law_largest_stiffness(law, radius, radius);
+        if (stiffness > 0) softest = fmin(softest, stiffness);
+    }
+    return 0.5 * softest * radius * radius;
+}

@@ -11,4 +11,8 @@
 /// tangentially by a wall. A run counts the true one; see scree_counters.
 double scree_time_step_critical(const scree_simulation *simulation);
 
+/// Energy [J] that a contact of particle i takes up, about, before it is as deep as the particle's radius, by the
+/// softest law of its material; INFINITY without any.
+double scree_impact_capacity(const scree_simulation *simulation, int64_t i);
+
 #endif

@@ -4,6 +4,7 @@
 #include "io/nearest_name.h"
 #include "io/scene_reader.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <math.h>
 #include <stdarg.h>
@@ -134,6 +135,16 @@ static value_label label_of(checked_value v)
     return label;
 }
 
+/// Is it a number with a unit, where a number is wanted?
+static bool has_unit(checked_value v)
+{
+    if (v.section->keys[v.key].unit == NULL || v.node->kind != SCREE_YAML_SCALAR) return false;
+    char *end;
+    strtod(v.node->text, &end);
+    const char *unit = end + strspn(end, " ");
+    return end != v.node->text && isalpha((unsigned char)*unit);
+}
+
 /// "LABEL is VALUE; it must be WHAT"
 static void refuse(scree_scene_reader *reader, checked_value v)
 {
@@ -145,7 +156,9 @@ static void refuse(scree_scene_reader *reader, checked_value v)
     if (scree_yaml_is_null(v.node))
         scree_scene_fault(reader, v.node, "%s has no value; it must be %s%s", label_of(v).text, allowed,
                           has_default ? ", or the key be left out" : "");
-    else scree_scene_fault(reader, v.node, "%s is %s; it must be %s", label_of(v).text, shown, allowed);
+    else
+        scree_scene_fault(reader, v.node, "%s is %s; it must be %s%s", label_of(v).text, shown, allowed,
+                          has_unit(v) ? ", written without its unit" : "");
     v.node->is_refused = true;
 }
 

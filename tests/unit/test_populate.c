@@ -106,6 +106,7 @@ static void test_regions_that_are_too_small_are_told_together(void)
            messages, sizeof messages);
     SCREE_CHECK_CONTAINS(messages, "particles \"first\": the region holds 5 particles");
     SCREE_CHECK_CONTAINS(messages, "particles \"second\": the region holds 0 particles");
+    SCREE_CHECK_CONTAINS(messages, "it is narrower than a cell: make it wider");
 }
 
 /// Every vertex inside the cylinder, along each axis; as many as the cross-section has room for.

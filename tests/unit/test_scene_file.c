@@ -418,6 +418,8 @@ static void test_faults_of_values(void)
          "name of materials.1 is 12; it must be"},
         {6, "  - {name: a.b, density: 1, youngs_modulus: 1e8, poisson_ratio: 0.1}", "name of materials.1 is \"a.b\""},
         {18, "  - {name: rock, source: rock, size: 0.5}", "test.yaml:18: triangles of shapes.0 is 0; a rock needs"},
+        {19, "  - {name: slab, source: box, size: 20 mm}",
+         "size of shapes.1 is \"20 mm\"; it must be a list of 3 numbers in [0, 1e+06] m, written without its unit"},
         {18, "  - {name: rock, source: rock, triangles: 4.5}", "triangles of shapes.0 is 4.5; it must be an integer"},
         {19, "  - {name: slab, source: box, size: [1, 0, 1]}", "size.1 of shapes.1 is 0; it must be above 0"},
         {20, "  - {name: mesh, source: file}", "test.yaml:20: file of shapes.2 is missing"},

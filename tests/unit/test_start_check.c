@@ -1,4 +1,5 @@
 // What a run cannot start from is refused, with the particle or wall, the place and the remedy.
+#include "dynamics/state.h"
 #include "scree/scene.h"
 #include "scree/simulation.h"
 
@@ -490,6 +491,44 @@ static void test_walls_that_part(void)
     check_parting(round, 0.2, NULL);
 }
 
+/// A ball that falls by a metre on a floor: the warning comes where its centre does come below the surface.
+static void test_contacts_that_are_too_soft(void)
+{
+    static const double moduli[] = {1e3, 1e6};
+    for (int k = 0; k < 2; ++k)
+    {
+        char text[1500];
+        snprintf(text, sizeof text,
+                 "name: soft\ntime: {end: 0.6}\n"
+                 "materials: [{name: jelly, density: 1000, youngs_modulus: %g, poisson_ratio: 0.25}]\n"
+                 "contact_laws: [{materials: [jelly, jelly], friction_coefficient: 0, damping_ratio: 0}]\n"
+                 "shapes:\n  - {name: ball, source: sphere, size: 0.02}\n"
+                 "  - {name: block, source: box, size: [0.4, 0.4, 0.4]}\n"
+                 "particles:\n  - {name: balls, shape: ball, material: jelly, bodies: [{position: [0, 0, 1]}]}\n"
+                 "walls:\n  - {name: floor, shape: block, material: jelly, position: [0, 0, -0.2]}\n",
+                 moduli[k]);
+        char *messages = messages_of(text, SCREE_OK);
+        const bool is_warned = strstr(messages, "contacts of \"jelly\" are too soft for it") != NULL;
+        free(messages);
+        scree_scene_file file = {0};
+        scree_report report = {0};
+        scree_simulation *simulation = NULL;
+        SCREE_CHECK_INT(scree_scene_parse(&file, text, "test.yaml", NULL, 0, &report), SCREE_OK);
+        SCREE_CHECK_INT(scree_simulation_create(&simulation, &file.scene, ".", &report), SCREE_OK);
+        bool is_inside = false;
+        for (int64_t n = scree_simulation_num_steps(simulation); n > 0; --n)
+        {
+            SCREE_CHECK_INT(scree_simulation_step(simulation, &report), SCREE_OK);
+            is_inside |= simulation->particles.position[0].z < 0;
+        }
+        SCREE_CHECK_INT(is_inside, k == 0);
+        SCREE_CHECK_INT(is_warned, is_inside);
+        scree_simulation_destroy(simulation);
+        scree_scene_close(&file);
+        scree_report_clear(&report);
+    }
+}
+
 int main(void)
 {
     SCREE_RUN(test_refused);
@@ -502,5 +541,6 @@ int main(void)
     SCREE_RUN(test_motions_that_tear_walls_apart);
     SCREE_RUN(test_walls_that_turn_in_others);
     SCREE_RUN(test_walls_that_part);
+    SCREE_RUN(test_contacts_that_are_too_soft);
     return SCREE_TEST_END();
 }

@@ -94,6 +94,7 @@ extern "C"
         char *name;
         scree_shape_source source;
         char *file;        ///< mesh file, relative to the scene's folder; only for source file
+        double scale;      ///< [1] factor of the coordinates of a file, default 1
         double size[3];    ///< [m] edge lengths of a box; first one: diameter of the enclosing sphere of the others
         int64_t triangles; ///< wanted number of triangles (sphere, rock); of a file: simplified to it; 0: as it is
         int64_t seed;      ///< of a rock

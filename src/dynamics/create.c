@@ -100,6 +100,10 @@ static scree_status make_one_mesh(scree_mesh *mesh, const scree_shape_def *def, 
         return SCREE_INVALID_INPUT;
     }
     status = scree_mesh_import(mesh, path, report);
+    for (int32_t v = 0; v < mesh->num_vertices && def->scale != 1; ++v)
+        mesh->vertices[v] = scree_vec3_scale(mesh->vertices[v], (scree_real)def->scale);
+    // rounding must not have closed a narrow gap
+    if (status == SCREE_OK && def->scale != 1) status = scree_mesh_validate(mesh, path, report);
     if (status == SCREE_OK && def->triangles > 0 && def->triangles < mesh->num_triangles)
         status = scree_mesh_simplify(mesh, (int32_t)def->triangles, 0, report);
     return status;

@@ -157,7 +157,8 @@ static void check_shape(scree_scene_reader *reader, scree_rules_names *shapes, c
                           "triangles of %s is %g; it must be 0 for the file as it is, or from 4 on", of, triangles);
 
     if (!is_file) warn_unused_key(reader, shape, "file", of, "the source is not file");
-    if (is_file) warn_unused_key(reader, shape, "size", of, "a file brings its own size");
+    if (!is_file) warn_unused_key(reader, shape, "scale", of, "the source is not file");
+    if (is_file) warn_unused_key(reader, shape, "size", of, "a file brings its own size, which scale changes");
     if (is_turned) warn_unused_key(reader, shape, "size", of, "the profile has the lengths");
     if (!is_turned) warn_unused_key(reader, shape, "profile", of, "the source is not turned");
     if (!is_turned) warn_unused_key(reader, shape, "segments", of, "the source is not turned");

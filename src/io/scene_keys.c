@@ -243,7 +243,8 @@ static const char introduction[] =
     "  `particles.cubes.count=500`, `gravity.2=-1.62`, `walls=[]`. Items of lists are addressed by their number\n"
     "  from 0 or by their name; values are YAML.\n"
     "- Aliases (`&a`, `*a`) work, merge keys (`<<`) do not. A file has up to 64 MB.\n"
-    "- Mesh files are looked for from the folder of the scene.\n";
+    "- Mesh files are looked for from the folder of the scene. Their numbers are metres, unless the shape has a "
+    "scale.\n";
 
 void scree_scene_print_keys(void *stream)
 {

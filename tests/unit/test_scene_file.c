@@ -34,7 +34,7 @@ static const char full_text[] =
     "shapes:\n"
     "  - {name: rock, source: rock, size: 0.5, triangles: 40, seed: 7}\n"
     "  - {name: slab, source: box, size: [1, 2, 3]}\n"
-    "  - {name: mesh, source: file, file: meshes/a b.obj, triangles: 1e2}\n"
+    "  - {name: mesh, source: file, file: meshes/a b.obj, scale: 1e-3, triangles: 1e2}\n"
     "  - {name: ball, source: sphere, size: [0.25, 0, 0], triangles: 80}\n"
     "  - {name: tetra, source: tetrahedron}\n"
     "  - {name: twist, source: schoenhardt}\n"
@@ -128,10 +128,11 @@ static void check_full_definitions(const scree_scene *s)
     SCREE_CHECK(law->rolling_damping_ratio == 0.75);
     SCREE_CHECK_INT(s->num_shapes, 6);
     SCREE_CHECK(s->shapes[0].source == SCREE_SHAPE_ROCK && equal3(s->shapes[0].size, 0.5, 0.5, 0.5));
-    SCREE_CHECK(s->shapes[0].triangles == 40 && s->shapes[0].seed == 7 && s->shapes[0].file[0] == '\0');
+    SCREE_CHECK(s->shapes[0].triangles == 40 && s->shapes[0].seed == 7 && s->shapes[0].scale == 1);
+    SCREE_CHECK(s->shapes[0].file[0] == '\0');
     SCREE_CHECK(s->shapes[1].source == SCREE_SHAPE_BOX && equal3(s->shapes[1].size, 1, 2, 3));
     SCREE_CHECK(s->shapes[2].source == SCREE_SHAPE_FILE && s->shapes[2].triangles == 100);
-    SCREE_CHECK(strcmp(s->shapes[2].file, "meshes/a b.obj") == 0);
+    SCREE_CHECK(strcmp(s->shapes[2].file, "meshes/a b.obj") == 0 && s->shapes[2].scale == 0.001);
     SCREE_CHECK(s->shapes[3].source == SCREE_SHAPE_SPHERE && equal3(s->shapes[3].size, 0.25, 0, 0));
     SCREE_CHECK(s->shapes[4].source == SCREE_SHAPE_TETRAHEDRON && s->shapes[5].source == SCREE_SHAPE_SCHOENHARDT);
 }

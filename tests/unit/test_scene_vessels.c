@@ -1,5 +1,6 @@
 // Keys of turned shapes, copies and regions: values in the structures, and what is said of faults.
 #include "scene_run.h"
+#include "test_folder.h"
 
 #define HEAD                                                                                       \
     "name: vessels\ntime: {end: 1, step: 1e-5}\n"                                                  \
@@ -30,6 +31,33 @@ static void test_keys_reach_their_fields(void)
     scene_run_end(&run);
 }
 
+/// A box of 20 x 30 x 50 in a file, in mm, as a particle and as a wall.
+static void test_scale_of_a_file(void)
+{
+    static const int quads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+    char path[512], text[2048];
+    snprintf(path, sizeof path, "%s/box.obj", scree_test_folder());
+    FILE *file = fopen(path, "w");
+    if (file == NULL) exit(EXIT_FAILURE);
+    for (int v = 0; v < 8; ++v) fprintf(file, "v %d %d %d\n", v & 1 ? 20 : 0, v & 2 ? 30 : 0, v & 4 ? 50 : 0);
+    for (int q = 0; q < 6; ++q)
+        fprintf(file, "f %d %d %d %d\n", quads[q][0] + 1, quads[q][1] + 1, quads[q][2] + 1, quads[q][3] + 1);
+    fclose(file);
+    snprintf(text, sizeof text,
+             HEAD "shapes:\n  - {name: cube, source: file, file: \"%s\", scale: 0.001}\n"
+                  "walls: [{name: box, shape: cube, material: stone, position: [0, 0, -0.1]}]\n",
+             path);
+    scene_run run;
+    scene_run_start(&run, text);
+    if (run.simulation == NULL) return;
+    SCREE_CHECK_CLOSE(run.simulation->particles.mass[0], 2500 * 0.02 * 0.03 * 0.05, 1e-8);
+    const scree_box box = run.simulation->wall_shapes[0].view.box;
+    SCREE_CHECK_CLOSE(box.lower.x, 0, 1e-9);
+    SCREE_CHECK_CLOSE(box.upper.x, 0.02, 1e-9);
+    SCREE_CHECK_CLOSE(box.upper.z, 0.05, 1e-9);
+    scene_run_end(&run);
+}
+
 static void test_faults(void)
 {
     static const struct
@@ -46,6 +74,8 @@ static void test_faults(void)
          "{radius: 0.1, height: 0.3}]",
          "shape \"odd\": the sides of its profile must not touch or cross each other"},
         {"source: box, copies: 9, offset: [0.5, 0, 0]", "shape \"odd\": its copies must not touch"},
+        {"source: file, file: a.obj, scale: -1", "scale of shapes.0 is -1; it must be a number in [1e-09, 1e+09]"},
+        {"source: box, scale: 2", "scale of shapes.0 is not used: the source is not file"},
         {"source: box, copies: 0", "copies of shapes.0 is 0; it must be an integer in [1, 1000]"},
         {"source: box, segments: 5", "segments of shapes.0 is not used: the source is not turned"},
     };
@@ -63,6 +93,7 @@ static void test_faults(void)
 int main(void)
 {
     SCREE_RUN(test_keys_reach_their_fields);
+    SCREE_RUN(test_scale_of_a_file);
     SCREE_RUN(test_faults);
     return SCREE_TEST_END();
 }

@@ -29,9 +29,9 @@ SECTOR = 32  # bytes, the least that a GPU moves
 KERNELS = [
     ("scree_predict", "particle", "src/dynamics/integrator_kernel.h",
      dict(own="mass:real force:vec3 torque:vec3 velocity:vec3*2 angular_momentum:vec3*2 position:vec3*2 orientation:quat*2 "
-              "inertia:vec3 scale:real pose:pose moving:real*6"), 1021),
+              "inertia:vec3 scale:real pose:pose*2 moving:real*6 shape:int32 travel:real*2"), 1204),
     ("scree_travel", "particle", "src/dynamics/neighbour_kernel.h",
-     dict(own="shape:int32 pose:pose searched_pose:pose last_pose:pose*2 travel:real*2"), 320),
+     dict(own="shape:int32 pose:pose searched_pose:pose"), 164),
     ("scree_mesh_apart", "pair", "src/contact/mesh_pairs_kernel.h",
      dict(own="active:int32 first_of_pair:int32 pairs:pair memory:memory", near="travel:real", far="travel:real"), 30),
     ("scree_overlap_pairs", "contact", "src/contact/overlap_pairs_kernel.h",

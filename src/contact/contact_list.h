@@ -68,6 +68,7 @@ SCREE_FN scree_contact_list scree_contact_list_view(const scree_contact_list *li
     scree_contact_list view = *list;
     view.device = NULL;
     view.scratch = NULL;
+    view.block = NULL;
     return view;
 }
 

@@ -3,6 +3,7 @@
 #ifndef SCREE_BODY_KERNEL_H
 #define SCREE_BODY_KERNEL_H
 
+#include "dynamics/neighbour_kernel.h"
 #include "dynamics/particles.h"
 #include "forces/moving_body.h"
 
@@ -22,6 +23,7 @@ typedef struct scree_body_arrays
 typedef struct scree_place_walls_args
 {
     scree_body_arrays bodies;
+    scree_ways ways;
     int64_t first; ///< body that the first wall is
     const scree_wall_motion *walls;
 } scree_place_walls_args;
@@ -29,6 +31,7 @@ typedef struct scree_place_walls_args
 /// Wall k.
 SCREE_FN void scree_place_walls_at(scree_place_walls_args a, int64_t k)
 {
+    scree_add_way(&a.ways, a.first + k, a.bodies.pose + a.first + k, &a.walls[k].pose);
     a.bodies.pose[a.first + k] = a.walls[k].pose;
     a.bodies.moving[a.first + k].velocity = a.walls[k].velocity;
     a.bodies.moving[a.first + k].angular_velocity = a.walls[k].angular_velocity;

@@ -43,6 +43,18 @@ static void store_velocities(const scree_particle_group *g, scree_moving_body *m
     }
 }
 
+/// What scree_add_way() does.
+static void add_ways(const scree_predict_args *a, const scree_particle_group *g, int64_t first)
+{
+    for (int l = 0; l < SCREE_LANES; ++l)
+    {
+        const scree_vec3 turn = scree_lanes_get(&g->turn_xyz, l);
+        const scree_pose pose = {scree_lanes_get(&g->position, l),
+                                 scree_quat_make(g->turn_w[l], turn.x, turn.y, turn.z), a->particles.scale[first + l]};
+        scree_add_way(&a->ways, first + l, a->pose + first + l, &pose);
+    }
+}
+
 /// False: not all of them are isotropic, and nothing was done.
 SCREE_LANES_FUNCTION static bool predict_group(const scree_predict_args *a, int64_t first)
 {
@@ -76,6 +88,7 @@ SCREE_LANES_FUNCTION static bool predict_group(const scree_predict_args *a, int6
     scree_lanes_store(particles.velocity + first, &g.velocity);
     scree_lanes_store(particles.angular_momentum + first, &g.angular_momentum);
     scree_lanes_scatter(particles.orientation + first, size, &g.turn_wxy, g.turn_z);
+    if (a->ways.travel != NULL) add_ways(a, &g, first);
     scree_pose *pose = a->pose + first;
     scree_lanes_scatter(&pose->position, sizeof *pose, &g.position, g.turn_w);
     scree_lanes_scatter(&pose->orientation.x, sizeof *pose, &g.turn_xyz, particles.scale + first);

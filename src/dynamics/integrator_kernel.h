@@ -8,6 +8,7 @@
 #ifndef SCREE_INTEGRATOR_KERNEL_H
 #define SCREE_INTEGRATOR_KERNEL_H
 
+#include "dynamics/neighbour_kernel.h"
 #include "dynamics/particles.h"
 #include "dynamics/step_tally.h"
 
@@ -18,7 +19,8 @@ typedef struct scree_predict_args
 {
     scree_particles particles;
     scree_real time_step;
-    scree_pose *pose;          ///< (num_particles) out: pose at the end of the step
+    scree_ways ways;           ///< shape and travel of each
+    scree_pose *pose;          ///< (num_particles) of the step before; out: pose at the end of the step
     scree_moving_body *moving; ///< (num_particles) out: estimates of the velocities at the end of the step, for damping
 } scree_predict_args;
 
@@ -134,9 +136,12 @@ SCREE_FN void scree_predict_at(scree_predict_args a, int64_t i)
     a.particles.orientation[i] = state.orientation;
     a.particles.velocity[i] = state.velocity;
     a.particles.angular_momentum[i] = state.angular_momentum;
-    a.pose[i].position = state.position;
-    a.pose[i].orientation = state.orientation;
-    a.pose[i].scale = a.particles.scale[i];
+    scree_pose pose;
+    pose.position = state.position;
+    pose.orientation = state.orientation;
+    pose.scale = a.particles.scale[i];
+    scree_add_way(&a.ways, i, a.pose + i, &pose);
+    a.pose[i] = pose;
     a.moving[i].velocity = end.velocity;
     a.moving[i].angular_velocity = end.angular_velocity;
 }

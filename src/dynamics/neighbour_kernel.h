@@ -70,29 +70,39 @@ SCREE_FN scree_real scree_displacement(const scree_shape_view *shape, const scre
     return shift + 2 * sine * (shape->bounding_radius * to->scale);
 }
 
+/// What is known of the ways of bodies from one search to the next.
+typedef struct scree_ways
+{
+    const scree_shape_view *shapes; ///< all shapes
+    const int32_t *shape;           ///< (num_bodies)
+    scree_real *travel;             ///< [m] (num_bodies) since the last search; NULL: not kept
+} scree_ways;
+
+/// Body i goes from the pose of the step before to that of this one.
+SCREE_FN void scree_add_way(const scree_ways *ways, int64_t i, const scree_pose *from, const scree_pose *to)
+{
+    if (!ways->travel) return;
+    ways->travel[i] += scree_displacement(ways->shapes + ways->shape[i], from, to);
+}
+
 typedef struct scree_travel_args
 {
     const scree_shape_view *shapes;  ///< all shapes
     const int32_t *shape;            ///< (num_bodies)
     const scree_pose *pose;          ///< (num_bodies)
     const scree_pose *searched_pose; ///< (num_bodies) of the last search
-    scree_pose *last_pose;           ///< (num_bodies) of the last step; becomes that of this one
-    scree_real *travel;              ///< [m] (num_bodies) way since the last search; NULL: not kept
     int64_t num_particles;
     scree_maximum *particles_moved; ///< [m] largest displacement since the last search
     scree_maximum *walls_moved;     ///< [m] the same of the walls
 } scree_travel_args;
 
-/// How far body i has moved, and the way of this step to its travel.
+/// How far body i has moved.
 SCREE_FN void scree_travel_at(scree_travel_args a, int64_t i)
 {
     const scree_shape_view *shape = a.shapes + a.shape[i];
     const scree_real moved = scree_displacement(shape, a.searched_pose + i, a.pose + i);
     if (i < a.num_particles) scree_atomic_max(a.particles_moved, moved);
     else scree_atomic_max(a.walls_moved, moved);
-    if (!a.travel) return;
-    a.travel[i] += scree_displacement(shape, a.last_pose + i, a.pose + i);
-    a.last_pose[i] = a.pose[i];
 }
 
 /// [m] how far two bodies can have come closer to each other.

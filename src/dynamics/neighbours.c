@@ -13,8 +13,6 @@ static scree_travel_args travel_args(const scree_simulation *s)
     args.shape = b->shape;
     args.pose = b->pose;
     args.searched_pose = b->searched_pose;
-    args.last_pose = b->last_pose;
-    args.travel = b->has_travel ? b->travel : NULL;
     args.num_particles = s->particles.num_particles;
     args.particles_moved = &b->tally->particles_moved;
     args.walls_moved = &b->tally->walls_moved;
@@ -103,7 +101,6 @@ scree_status scree_search_neighbours(scree_simulation *simulation)
 
     scree_device_zero(device, b->travel, (size_t)num_bodies * sizeof *b->travel);
     scree_device_copy(device, b->searched_pose, b->pose, (size_t)num_bodies * sizeof *b->pose);
-    if (b->has_travel) scree_device_copy(device, b->last_pose, b->pose, (size_t)num_bodies * sizeof *b->pose);
     b->has_pairs = true;
     b->is_search_asked = false;
     b->searched_step = simulation->step;

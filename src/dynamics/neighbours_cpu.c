@@ -1,6 +1,6 @@
 /// \file neighbours_cpu.c
 /// How far bodies have moved, on the CPU. Particles of one shape that is a sphere are worked on in groups of lanes
-/// (lanes.h) where travels are not kept; all others one by one.
+/// (lanes.h); all others one by one.
 #include "core/lanes.h"
 #include "dynamics/dynamics.h"
 
@@ -12,7 +12,7 @@ SCREE_LANES_FUNCTION static bool travel_group(const scree_travel_args *a, int64_
     const int32_t *shape = a->shape + first;
     int32_t other = 0;
     for (int l = 1; l < SCREE_LANES; ++l) other |= shape[l] ^ shape[0];
-    if (other != 0 || a->shapes[shape[0]].kind != SCREE_KIND_SPHERE || a->travel != NULL) return false;
+    if (other != 0 || a->shapes[shape[0]].kind != SCREE_KIND_SPHERE) return false;
 
     const int64_t size = sizeof *a->pose;
     scree_lanes_vec3 from, to;

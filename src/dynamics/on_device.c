@@ -148,7 +148,6 @@ static scree_status copy_buffers(scree_simulation *there, const scree_simulation
     SCREE_COPY(inverse_radius, num_bodies)
     SCREE_COPY(shape, num_bodies)
     SCREE_COPY(searched_pose, num_bodies)
-    SCREE_COPY(last_pose, num_bodies)
     SCREE_COPY(travel, num_bodies)
     SCREE_COPY(old_groups, 2 * num_bodies)
 #undef SCREE_COPY

@@ -18,7 +18,7 @@ scree_plan_bytes scree_simulation_plan_bytes(const scree_simulation *simulation)
     const bool has_meshes = has[SCREE_KIND_MESH], has_spheres = has[SCREE_KIND_SPHERE];
     scree_plan_bytes bytes = {0};
     bytes.state = 6 * sizeof(scree_vec3) + sizeof(scree_quat) + 2 * sizeof(scree_real) + 3 * sizeof(int32_t);
-    const size_t body = 3 * sizeof(scree_pose) + sizeof(scree_moving_body) + 2 * sizeof(scree_real) + sizeof(int32_t) +
+    const size_t body = 2 * sizeof(scree_pose) + sizeof(scree_moving_body) + 2 * sizeof(scree_real) + sizeof(int32_t) +
                         (has_spheres ? sizeof(scree_sphere) : 0);
     const size_t tree =
         2 * sizeof(scree_lbvh_node) + 3 * sizeof(int32_t) + 1 + 2 * (sizeof(uint64_t) + sizeof(int32_t));

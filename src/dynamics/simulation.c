@@ -12,6 +12,7 @@ void scree_predict_motion(scree_simulation *simulation)
     scree_predict_args args;
     args.particles = simulation->particles;
     args.time_step = (scree_real)simulation->time_step;
+    args.ways = scree_step_ways(simulation);
     args.pose = simulation->buffers->pose;
     args.moving = simulation->buffers->moving;
     scree_predict_launch_on(simulation->device, args, simulation->particles.num_particles);

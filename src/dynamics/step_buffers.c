@@ -62,7 +62,6 @@ scree_status scree_step_buffers_create(scree_simulation *simulation)
     SCREE_ALLOCATE(inverse_radius, num_bodies)
     SCREE_ALLOCATE(shape, num_bodies)
     SCREE_ALLOCATE(searched_pose, num_bodies)
-    SCREE_ALLOCATE(last_pose, num_bodies)
     SCREE_ALLOCATE(travel, num_bodies)
     SCREE_ALLOCATE(old_groups, 2 * num_bodies)
     SCREE_ALLOCATE(broad_phase_walls, num_walls)
@@ -94,10 +93,10 @@ void scree_step_buffers_destroy(scree_simulation *simulation)
     scree_step_buffers *b = simulation->buffers;
     if (b == NULL) return;
     scree_device *device = b->device;
-    void *const arrays[] = {b->pose,      b->moving,      b->shape,       b->inverse_radius, b->searched_pose,
-                            b->last_pose, b->travel,      b->moving_wall, b->wall_axes,      b->broad_phase_walls,
-                            b->work_sums, b->load_sums,   b->old_groups,  b->old_of_contact, b->is_continued,
-                            b->sides,     b->wall_motion, b->board};
+    void *const arrays[] = {b->pose,        b->moving,      b->shape,          b->inverse_radius,    b->searched_pose,
+                            b->travel,      b->moving_wall, b->wall_axes,      b->broad_phase_walls, b->work_sums,
+                            b->load_sums,   b->old_groups,  b->old_of_contact, b->is_continued,      b->sides,
+                            b->wall_motion, b->board};
     for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; ++k) scree_device_free(device, arrays[k]);
     scree_forget_recordings(b);
     scree_device_free_host(device, b->board_here);
@@ -130,12 +129,20 @@ void scree_move_walls(scree_simulation *simulation, double time)
     }
 }
 
+scree_ways scree_step_ways(const scree_simulation *simulation)
+{
+    const scree_step_buffers *b = simulation->buffers;
+    const scree_ways ways = {simulation->shape_views, b->shape, b->has_travel ? b->travel : NULL};
+    return ways;
+}
+
 void scree_place_walls(scree_simulation *simulation)
 {
     const scree_step_buffers *b = simulation->buffers;
     const size_t num = (size_t)simulation->num_walls;
     scree_device_send(simulation->device, b->wall_motion, b->wall_motion_here, num * sizeof *b->wall_motion);
-    const scree_place_walls_args args = {body_arrays(b), simulation->particles.num_particles, b->wall_motion};
+    const scree_place_walls_args args = {body_arrays(b), scree_step_ways(simulation),
+                                         simulation->particles.num_particles, b->wall_motion};
     scree_place_walls_launch_on(simulation->device, args, simulation->num_walls);
 }
 

@@ -21,7 +21,6 @@ typedef struct scree_step_buffers
 
     // neighbours
     scree_pose *searched_pose; ///< (num_bodies) poses of the last search
-    scree_pose *last_pose;     ///< (num_bodies) poses of the last step
     bool has_travel;           ///< some particles are meshes, so travel is kept
     scree_real *travel;        ///< [m] (num_bodies) bound of the way of any point of the body since the last search
     scree_broad_phase_wall *broad_phase_walls; ///< (num_walls)
@@ -85,7 +84,8 @@ void scree_step_buffers_destroy(scree_simulation *simulation);
 
 /// Poses and velocities of the walls at `time`, on the CPU.
 void scree_move_walls(scree_simulation *simulation, double time);
-/// First half kick and drift of the particles; poses and velocities of the walls to the body arrays.
+/// First half kick and drift of the particles; poses and velocities of the walls to the body arrays; their ways to the
+/// travels of all bodies.
 void scree_predict_motion(scree_simulation *simulation);
 /// Poses and velocities of the walls to the body arrays.
 void scree_place_walls(scree_simulation *simulation);
@@ -94,7 +94,7 @@ void scree_place_particles(scree_simulation *simulation);
 
 /// Has a wall come or gone since the last search?
 bool scree_have_walls_changed(const scree_simulation *simulation);
-/// The way of this step to the travels of all bodies, and how far they have moved since the last search to the tally.
+/// How far all bodies have moved since the last search to the tally.
 void scree_follow_bodies(const scree_simulation *simulation);
 /// Follows the bodies. May one have left its skin since the last search?
 bool scree_is_search_due(scree_simulation *simulation);
@@ -130,6 +130,8 @@ void scree_count_contacts(scree_simulation *simulation);
 scree_halt scree_play_step(scree_simulation *simulation);
 void scree_forget_recordings(scree_step_buffers *buffers);
 
+/// Where ways of bodies are added up.
+scree_ways scree_step_ways(const scree_simulation *simulation);
 /// The bodies as the narrow phase sees them.
 scree_bodies scree_step_bodies(const scree_simulation *simulation);
 scree_body_motion scree_step_body_motion(const scree_step_buffers *buffers);

@@ -121,7 +121,7 @@ inline scree_body_motion motion_on(side &where)
 
 inline scree_contact_list contacts_on(side &where, const scree_contact_list &list, int64_t num_pairs)
 {
-    scree_contact_list c = list;
+    scree_contact_list c = scree_contact_list_view(&list);
     const int64_t n = list.num_contacts;
     c.first_of_pair = where.copy(list.first_of_pair, num_pairs + 1);
     c.bodies = where.copy(list.bodies, n);

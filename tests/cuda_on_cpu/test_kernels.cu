@@ -26,6 +26,11 @@ SCREE_DECLARE_LAUNCH_CUDA(scree_place_particles)
 
 // ---- motion
 
+static scree_ways ways_on(side &where)
+{
+    return {shapes_on(where), where.copy(b->shape, num_bodies), where.copy(b->travel, num_bodies)};
+}
+
 static void test_predict()
 {
     check_two_sides(
@@ -34,7 +39,8 @@ static void test_predict()
             scree_predict_args args;
             args.particles = particles_on(where);
             args.time_step = (scree_real)s->time_step;
-            args.pose = where.make<scree_pose>(num_particles);
+            args.ways = ways_on(where);
+            args.pose = where.copy(b->searched_pose, num_particles);
             args.moving = where.zeros<scree_moving_body>(num_particles);
             LAUNCH_ON(where, scree_predict, args, num_particles);
             where.keep(args.particles.position, num_particles);
@@ -43,6 +49,7 @@ static void test_predict()
             where.keep(args.particles.angular_momentum, num_particles);
             where.keep(args.pose, num_particles);
             where.keep(args.moving, num_particles);
+            where.keep(args.ways.travel, num_bodies);
         });
 }
 
@@ -89,6 +96,21 @@ static void test_boxes()
         });
 }
 
+/// Those of the last search.
+static std::vector<scree_box> boxes;
+static std::vector<scree_vec3> centres;
+static std::vector<scree_real> radii;
+
+static void make_boxes()
+{
+    boxes.resize((size_t)num_particles);
+    centres.resize((size_t)num_particles);
+    radii.resize((size_t)num_particles);
+    const scree_boxes_args args = {s->shape_views, b->shape,       b->searched_pose, b->skin,
+                                   boxes.data(),   centres.data(), radii.data()};
+    for (int64_t i = 0; i < num_particles; ++i) scree_boxes_at(args, i);
+}
+
 static scree_body_arrays empty_bodies(side &where)
 {
     scree_body_arrays bodies;
@@ -114,10 +136,12 @@ static void test_place()
             LAUNCH_ON(where, scree_place_particles, args, num_particles);
             scree_place_walls_args walls;
             walls.bodies = args.bodies;
+            walls.ways = ways_on(where);
             walls.first = num_particles;
             walls.walls = where.copy(b->wall_motion_here, s->num_walls);
             LAUNCH_ON(where, scree_place_walls, walls, s->num_walls);
             keep_bodies(where, args.bodies);
+            where.keep(walls.ways.travel, num_bodies);
         });
 }
 
@@ -148,15 +172,11 @@ static void test_travel()
             args.shape = where.copy(b->shape, num_bodies);
             args.pose = where.copy(b->pose, num_bodies);
             args.searched_pose = where.copy(b->searched_pose, num_bodies);
-            args.last_pose = where.copy(b->searched_pose, num_bodies);
-            args.travel = where.copy(b->travel, num_bodies);
             args.num_particles = num_particles;
             scree_step_tally *tally = where.zeros<scree_step_tally>(1);
             args.particles_moved = &tally->particles_moved;
             args.walls_moved = &tally->walls_moved;
             LAUNCH_ON(where, scree_travel, args, num_bodies);
-            where.keep(args.last_pose, num_bodies);
-            where.keep(args.travel, num_bodies);
             where.keep(&tally->particles_moved, 2);
             double largest = 0;
             for (int64_t i = 0; i < num_particles; ++i)
@@ -230,13 +250,13 @@ static scree_lbvh_view build_tree_on(side &where, const scree_box *boxes, int64_
 
 static void test_tree()
 {
-    check_two_sides([](side &where) { build_tree_on(where, b->boxes, num_particles); });
+    check_two_sides([](side &where) { build_tree_on(where, boxes.data(), num_particles); });
 
     // and the tree is that of the library
     side device(true, 128);
-    build_tree_on(device, b->boxes, num_particles);
+    build_tree_on(device, boxes.data(), num_particles);
     scree_lbvh tree = {};
-    SCREE_CHECK_INT(scree_lbvh_build(&tree, b->boxes, num_particles), SCREE_OK);
+    SCREE_CHECK_INT(scree_lbvh_build(&tree, boxes.data(), num_particles), SCREE_OK);
     SCREE_CHECK(
         memcmp(device.outcome.data(), tree.view.nodes, (size_t)(2 * num_particles - 1) * sizeof *tree.view.nodes) == 0);
     scree_lbvh_destroy(&tree);
@@ -246,12 +266,12 @@ static void test_tree()
 static uint64_t *find_keys_on(side &where, int32_t id_bits, int64_t *num_keys)
 {
     scree_particle_pairs_args particle_args = {};
-    particle_args.tree = build_tree_on(where, b->boxes, num_particles);
+    particle_args.tree = build_tree_on(where, boxes.data(), num_particles);
     scree_wall_pairs_args wall_args = {};
     std::vector<scree_broad_phase_wall> walls(b->broad_phase_walls, b->broad_phase_walls + s->num_walls);
     for (scree_broad_phase_wall &wall : walls) wall.tree = tree_on(where, wall.tree);
-    wall_args.centres = where.copy(b->centres, num_particles);
-    wall_args.radii = where.copy(b->radii, num_particles);
+    wall_args.centres = where.copy(centres.data(), num_particles);
+    wall_args.radii = where.copy(radii.data(), num_particles);
     particle_args.centres = wall_args.centres;
     particle_args.radii = wall_args.radii;
     wall_args.walls = where.copy(walls.data(), s->num_walls);
@@ -331,6 +351,7 @@ int main()
     printf("%lld pairs, %lld contacts\n", (long long)s->broad_phase.num_pairs, (long long)s->contacts.num_contacts);
     SCREE_CHECK(s->contacts.num_contacts > 40);
 
+    make_boxes();
     SCREE_RUN(test_predict);
     SCREE_RUN(test_correct);
     SCREE_RUN(test_boxes);

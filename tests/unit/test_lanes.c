@@ -136,10 +136,13 @@ static void test_motion(void)
     scree_predict_args predict;
     predict.particles = *p;
     predict.time_step = (scree_real)1e-5;
+    predict.ways = scree_step_ways(s);
+    predict.ways.travel = b->travel;
     predict.pose = b->pose;
     predict.moving = b->moving;
-    output predicted[] = {OUTPUT(p->position, n),         OUTPUT(p->orientation, n), OUTPUT(p->velocity, n),
-                          OUTPUT(p->angular_momentum, n), OUTPUT(b->pose, n),        OUTPUT(b->moving, n)};
+    output predicted[] = {
+        OUTPUT(p->position, n), OUTPUT(p->orientation, n), OUTPUT(p->velocity, n), OUTPUT(p->angular_momentum, n),
+        OUTPUT(b->pose, n),     OUTPUT(b->moving, n),      OUTPUT(b->travel, n)};
     COMPARE(scree_predict, predict, n, predicted);
 
     scree_travel_args travel;

@@ -26,6 +26,8 @@ def checked_series(run):
     missing = [name for name in ("time", "potential", "input", "balance", *TURNED_OVER) if name not in series]
     if missing:
         raise SystemExit(f"series.csv lacks the columns {', '.join(missing)}")
+    if len(series["time"]) == 0:
+        raise SystemExit("series.csv has no rows; set output.series in the scene")
     return series
 
 

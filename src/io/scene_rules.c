@@ -10,6 +10,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/// Densities [kg/m^3] below are told; those in g/cm^3 are up to 23.
+#define LIGHT 25.0
+
 bool scree_rules_number(const scree_yaml_node *section, const char *key, double *number)
 {
     const scree_yaml_node *node = scree_yaml_find(section, key);
@@ -392,6 +395,22 @@ static void check_fields(scree_scene_reader *reader, scree_rules_names *walls)
                           energy_max);
 }
 
+/// Warns of particles that are so light that the density is a slip of the unit, or a foam.
+static void warn_of_densities(scree_scene_reader *reader, const scree_rules_scene *scene)
+{
+    const scree_yaml_node *materials = scree_yaml_find(reader->root, "materials");
+    for (int64_t m = 0; m < scree_rules_num_items(materials); ++m)
+    {
+        double density = INFINITY;
+        bool is_used = false;
+        for (int64_t k = 0; k < scene->num_groups; ++k) is_used |= scene->group_material[k] == m;
+        if (!is_used || !scree_rules_number(materials->items[m], "density", &density) || density >= LIGHT) continue;
+        scree_scene_warn(reader, scree_yaml_find(materials->items[m], "density"),
+                         "density of materials.%lld is %g kg/m^3, that of a foam; 1 g/cm^3 is 1000 kg/m^3",
+                         (long long)m, density);
+    }
+}
+
 void scree_scene_check_rules(scree_scene_reader *reader)
 {
     if (reader->root->kind != SCREE_YAML_SECTION || reader->is_exhausted) return;
@@ -423,5 +442,6 @@ void scree_scene_check_rules(scree_scene_reader *reader)
     if (reader->num_faults > 0 || reader->is_exhausted) return;
     scree_rules_warn_unused(reader, &materials);
     scree_rules_warn_unused(reader, &shapes);
+    warn_of_densities(reader, &scene);
     if (scene.num_groups == 0) scree_scene_warn(reader, NULL, "there are no particles, so nothing will move");
 }

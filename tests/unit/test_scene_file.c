@@ -491,6 +491,8 @@ static void test_warnings_of_keys_without_effect(void)
     } cases[] = {
         {19, "  - {name: slab, source: box, size: [1, 2, 3], triangles: 40}",
          "warning: test.yaml:19: triangles of shapes.1 is not used: the source fixes the number"},
+        {5, "  - {name: rock, density: 2.7, youngs_modulus: 2e7, poisson_ratio: 0.25, shear_modulus: 1.5e7}",
+         "warning: test.yaml:5: density of materials.0 is 2.7 kg/m^3, that of a foam"},
         {28, "    size: {mean: 0.01}", "warning: test.yaml:28: mean of particles.0.size is not used"},
         {40, "  - {name: floor, shape: slab, material: plate, motion: {velocity: [1, 0, 0]}}",
          "velocity of walls.0.motion is not used: the kind of motion is fixed"},

@@ -421,7 +421,7 @@ static scree_status load_checkpoint(run_state *run)
     char *path = checkpoint_path(run);
     if (path == NULL) return SCREE_OUT_OF_MEMORY;
     const scree_status status = scree_checkpoint_load(run->simulation, path, &run->report);
-    if (status == SCREE_NOT_FOUND)
+    if (status == SCREE_NOT_FOUND || status == SCREE_READ_FAILED)
         scree_report_add(&run->report, "start the run anew: with another folder (-o), or with --replace");
     free(path);
     return status;

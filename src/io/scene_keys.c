@@ -242,6 +242,9 @@ static const char introduction[] =
     "- `--set PATH=VALUE` replaces a value, or adds one, before the scene is checked: `time.end=2`,\n"
     "  `particles.cubes.count=500`, `gravity.2=-1.62`, `walls=[]`. Items of lists are addressed by their number\n"
     "  from 0 or by their name; values are YAML.\n"
+    "- A mixture is several groups of particles with the same region: `region: &box {...}` in the first, `region: "
+    "*box`\n"
+    "  in the others, each with its count or mass (`scenes/mixture.yaml`).\n"
     "- Aliases (`&a`, `*a`) work, merge keys (`<<`) do not. A file has up to 64 MB.\n"
     "- Mesh files are looked for from the folder of the scene. Their numbers are metres, unless the shape has a "
     "scale.\n";

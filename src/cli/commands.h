@@ -13,6 +13,7 @@ enum
     SCREE_EXIT_USAGE = 2   ///< the command line or the input was refused
 };
 
+// argv[0]: the program as it was called; what follows the name of the command is in argv[1] and on
 int scree_run_command(int argc, char **argv);     ///< run a scene
 int scree_check_command(int argc, char **argv);   ///< check a scene, tell its plan
 int scree_shape_command(int argc, char **argv);   ///< measure, mend, simplify meshes

@@ -116,5 +116,7 @@ int main(int argc, char **argv)
         printf("scree %s\n", SCREE_VERSION);
         return finish();
     }
-    return command != NULL ? command->run(argc - 1, argv + 1) : unknown(name[0] == '-' ? "option" : "command", name);
+    if (command == NULL) return unknown(name[0] == '-' ? "option" : "command", name);
+    argv[1] = argv[0]; // as the program was called
+    return command->run(argc - 1, argv + 1);
 }

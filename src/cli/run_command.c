@@ -45,6 +45,7 @@ static const char usage[] =
 /// The command line, understood.
 typedef struct run_request
 {
+    const char *program; ///< as it was called
     const char *path;
     const char *folder;     ///< NULL: by the name of the scene
     const char **overrides; ///< (num_overrides)
@@ -320,7 +321,9 @@ static char *checkpoint_path(const run_state *run)
 static void print_command_to_go_on(const run_state *run)
 {
     const run_request *request = run->request;
-    fputs("go on with: scree run --restart -o", stdout);
+    fputs("go on with:", stdout);
+    print_word(request->program);
+    fputs(" run --restart -o", stdout);
     print_word(run->folder_path);
     if (request->num_threads > 0) printf(" --threads %d", request->num_threads);
     if (request->device >= 0) printf(" --device cuda:%d", request->device);
@@ -616,7 +619,8 @@ int scree_run_command(int argc, char **argv)
 {
     // all files are closed by the time the program ends; after a full disk HDF5's own closing then would crash
     H5dont_atexit();
-    run_request request = {.device = -1, .overrides = calloc((size_t)argc + 1, sizeof(const char *))};
+    run_request request = {
+        .program = argv[0], .device = -1, .overrides = calloc((size_t)argc + 1, sizeof(const char *))};
     if (request.overrides == NULL) return SCREE_EXIT_FAILED;
     int exit_code = SCREE_EXIT_USAGE;
     if (parse_command_line(&request, argc, argv))

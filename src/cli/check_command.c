@@ -70,6 +70,29 @@ static bool parse_command_line(check_request *request, int argc, char **argv)
     return request->path != NULL || refuse("no scene given", "");
 }
 
+/// Groups that are told one by one; the others are counted.
+#define MAX_GROUPS 20
+
+/// How many particles of what mass each group has: of those filled in by mass or size nobody else tells.
+static void print_groups(const scree_simulation *simulation)
+{
+    const scree_particles *p = &simulation->particles;
+    const uint32_t num_groups = simulation->scene->num_particles;
+    for (uint32_t g = 0; num_groups > 1 && g < num_groups && g < MAX_GROUPS; ++g)
+    {
+        int64_t num = 0;
+        double mass = 0;
+        for (int64_t i = 0; i < p->num_particles; ++i)
+        {
+            if (p->group[i] != (int32_t)g) continue;
+            ++num;
+            mass += (double)p->mass[i];
+        }
+        printf("    \"%s\" %lld, mass %.6g kg\n", simulation->scene->particles[g].name, (long long)num, mass);
+    }
+    if (num_groups > MAX_GROUPS) printf("    and %u more groups\n", num_groups - MAX_GROUPS);
+}
+
 /// What the plan leaves out: masses and the time step against what it should be.
 static void print_measures(const scree_simulation *simulation)
 {
@@ -77,6 +100,7 @@ static void print_measures(const scree_simulation *simulation)
     for (int64_t i = 0; i < simulation->particles.num_particles; ++i) mass += (double)simulation->particles.mass[i];
     const double critical = scree_time_step_critical(simulation), step = scree_simulation_time_step(simulation);
     printf("  particles %lld, mass %.6g kg\n", (long long)scree_simulation_num_particles(simulation), mass);
+    print_groups(simulation);
     printf("  contacts now %lld\n", (long long)scree_simulation_counters(simulation).num_contacts);
     printf("  time step %.4g s", step);
     if (isfinite(critical))

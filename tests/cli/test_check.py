@@ -50,6 +50,18 @@ def test_numbers_of_the_plan():
     assert suggested == pytest.approx(0.5 * critical, rel=1e-3)
 
 
+def test_numbers_of_groups():
+    out = scree("check", scene("mixture")).stdout
+    total, mass = re.search(r"particles (\d+), mass (\S+) kg", out).groups()
+    groups = re.findall(r'^ {4}"(\w+)" (\d+), mass (\S+) kg$', out, re.M)
+    assert [(name, number) for name, number, _ in groups] == [("rocks", "300"), ("balls", "200"), ("cubes", "100")]
+    assert int(total) == 600
+    assert float(mass) == pytest.approx(sum(float(one) for _, _, one in groups), rel=1e-5)
+    # spheres of 10 mm and 2500 kg/m^3, cubes of 10 mm and 2600 kg/m^3
+    assert float(groups[1][2]) == pytest.approx(200 * 2500 * 3.141592653589793 / 6 * 1e-6, rel=1e-5)
+    assert float(groups[2][2]) == pytest.approx(100 * 2600 * 1e-6, rel=1e-5)
+
+
 def test_set_changes_the_scene():
     result = scree("check", scene("gravity_packing"), "--set", "particles.fall.count=100", "--set=time.end=0.5")
     assert result.returncode == 0, result.stderr

@@ -17,7 +17,8 @@ typedef struct mixture
 
 static mixture draw_mixture(uint64_t *state)
 {
-    mixture m = {.axis = (int)(4 * scree_test_random(state)), .num_groups = 1 + (int)(4 * scree_test_random(state))};
+    mixture m = {.axis = (int)(4 * scree_test_random(state))};
+    m.num_groups = 1 + (int)(4 * scree_test_random(state));
     for (int k = 0; k < 3; ++k)
     {
         m.lower[k] = 2 * scree_test_random(state) - 1;
@@ -43,16 +44,19 @@ static void write_scene(const mixture *m, uint64_t state, char *text)
                           "particles:\n");
     for (int g = 0; g < m->num_groups; ++g)
     {
-        const double size = 0.005 + 0.06 * scree_test_random(&state) * scree_test_random(&state);
+        // one after the other: the order of arguments is up to the compiler
+        const double share = scree_test_random(&state), size = 0.005 + 0.06 * share * share;
+        const char *shape = shapes[(int)(4 * scree_test_random(&state))];
+        const int seed = (int)(9 * scree_test_random(&state));
+        const double spacing = 1 + scree_test_random(&state);
         const double wider = size * (1 + scree_test_random(&state));
-        length +=
-            snprintf(text + length, (size_t)(TEXT_SIZE - length),
-                     "  - {name: group_%d, shape: %s, material: stone, count: %d, seed: %d, spacing: %.17g,\n"
-                     "     size: {distribution: uniform, min: %.17g, max: %.17g},\n"
-                     "     region: {min: [%.17g, %.17g, %.17g], max: [%.17g, %.17g, %.17g]%s%c}}\n",
-                     g, shapes[(int)(4 * scree_test_random(&state))], m->count[g], (int)(9 * scree_test_random(&state)),
-                     1 + scree_test_random(&state), size, wider, m->lower[0], m->lower[1], m->lower[2], m->upper[0],
-                     m->upper[1], m->upper[2], m->axis < 3 ? ", cylinder: " : "", m->axis < 3 ? "xyz"[m->axis] : ' ');
+        length += snprintf(text + length, (size_t)(TEXT_SIZE - length),
+                           "  - {name: group_%d, shape: %s, material: stone, count: %d, seed: %d, spacing: %.17g,\n"
+                           "     size: {distribution: uniform, min: %.17g, max: %.17g},\n"
+                           "     region: {min: [%.17g, %.17g, %.17g], max: [%.17g, %.17g, %.17g]%s%c}}\n",
+                           g, shape, m->count[g], seed, spacing, size, wider, m->lower[0], m->lower[1], m->lower[2],
+                           m->upper[0], m->upper[1], m->upper[2], m->axis < 3 ? ", cylinder: " : "",
+                           m->axis < 3 ? "xyz"[m->axis] : ' ');
     }
 }
 

@@ -21,8 +21,6 @@ typedef struct scree_live
     int64_t halt;             ///< a scree_halt; once it is not SCREE_HALT_NONE all launches return at once
     int64_t num_steps;        ///< since the last search
     int64_t num_contacts;     ///< of this step, once they are counted
-    int64_t num_old_contacts; ///< of the step before
-    int64_t max_old_contacts; ///< that the launches were recorded for
 } scree_live;
 
 #endif

@@ -16,37 +16,22 @@ static scree_status make_room(scree_simulation *s)
         scree_contact_list_reserve(&s->old_contacts, s->contacts.max_contacts, s->broad_phase.num_pairs);
     if (status != SCREE_OK) return status;
     // none of them ever has more contacts than that
-    const int64_t most = s->contacts.max_contacts, num_blocks = 2 * scree_count_blocks(most, SCREE_WORK_BLOCK);
-    // sums of sums, down to one, take less than a 255th of them
-    const int64_t num_sums = num_blocks + num_blocks / (SCREE_SUM_FAN_IN - 1) + 8;
+    const int64_t most = s->contacts.max_contacts;
     status = scree_device_reserve_only(device, &b->old_of_contact, &b->max_contacts, most, sizeof *b->old_of_contact);
     if (status == SCREE_OK)
         status = scree_device_reserve_only(device, &b->is_continued, &b->max_old, most, sizeof *b->is_continued);
-    if (status == SCREE_OK)
-        status = scree_device_reserve_only(device, &b->work_sums, &b->max_work_sums, num_sums, sizeof *b->work_sums);
     if (status == SCREE_OK && device != NULL)
         status = scree_device_reserve_only(device, &b->sides, &b->max_sides, most, 2 * sizeof *b->sides);
-    if (status == SCREE_OK) status = scree_reserve_wall_loads(s, most);
     return status;
 }
 
-/// Sums of ended contacts, before those of the present ones.
-static int64_t count_ended_blocks(const scree_simulation *s)
+/// The largest indentation; beside forces and motion.
+static void find_largest_indentation(const scree_simulation *s)
 {
-    return scree_count_blocks(s->old_contacts.num_contacts, SCREE_WORK_BLOCK);
-}
-
-/// What ended contacts had stored, and the largest indentation; beside forces and motion.
-static void sum_up_contacts(const scree_simulation *s)
-{
-    const scree_step_buffers *b = s->buffers;
     scree_device_branch(s->device, 1);
     const int64_t num = s->contacts.num_contacts;
-    const scree_ended_args ended = {s->old_contacts.elastic_energy, s->old_contacts.spring_energy, b->is_continued,
-                                    s->old_contacts.num_contacts, b->work_sums};
-    scree_ended_launch_on(s->device, ended, count_ended_blocks(s));
-    const scree_indentations_args indentations = {s->contacts.indentation, num, &b->tally->largest_indentation};
-    scree_indentations_launch_on(s->device, indentations, scree_count_blocks(num, SCREE_WORK_BLOCK));
+    const scree_indentations_args args = {s->contacts.indentation, num, &s->buffers->tally->largest_indentation};
+    scree_indentations_launch_on(s->device, args, scree_count_blocks(num, SCREE_CONTACT_BLOCK));
     scree_device_branch(s->device, 0);
 }
 
@@ -86,7 +71,7 @@ static scree_pair_groups find_old_groups(const scree_simulation *s)
 /// Which old contacts the present ones continue.
 static void match_contacts(const scree_simulation *s)
 {
-    const scree_step_buffers *b = s->buffers;
+    scree_step_buffers *b = s->buffers;
     const scree_contact_list *contacts = &s->contacts, *old = &s->old_contacts;
     scree_history_match_args match;
     match.pairs = s->broad_phase.pairs;
@@ -99,6 +84,7 @@ static void match_contacts(const scree_simulation *s)
     match.old_of_contact = b->old_of_contact;
     match.is_continued = b->is_continued;
     match.old_groups = find_old_groups(s);
+    b->has_old_groups = !b->is_old_list_of_same_pairs;
     scree_device_zero(s->device, b->is_continued, (size_t)old->num_contacts);
     scree_history_match_launch_on(s->device, match, s->broad_phase.num_pairs);
 }
@@ -138,7 +124,7 @@ scree_status scree_update_contacts(scree_simulation *simulation)
     if (status != SCREE_OK) return status;
     match_contacts(simulation);
     simulation->buffers->is_old_list_of_same_pairs = true;
-    sum_up_contacts(simulation);
+    find_largest_indentation(simulation);
     scree_count_contacts(simulation);
     scree_stage_end(&simulation->clock, SCREE_STAGE_HISTORY);
     return SCREE_OK;
@@ -151,7 +137,7 @@ void scree_update_contacts_again(scree_simulation *simulation)
     scree_narrow_phase_again(&simulation->narrow_phase, &bodies, broad_phase->pairs, broad_phase->num_pairs,
                              &simulation->contacts, &simulation->buffers->board->live);
     match_contacts(simulation);
-    sum_up_contacts(simulation);
+    find_largest_indentation(simulation);
 }
 
 scree_body_motion scree_step_body_motion(const scree_step_buffers *buffers)
@@ -208,7 +194,7 @@ void scree_gather_forces(scree_simulation *simulation)
 /// Adds the sums up, in groups of always the same ones, until one is left, which goes to the tally.
 static void reduce_work(const scree_simulation *s, int64_t num_parts)
 {
-    scree_work_reduce_args args = {s->buffers->work_sums, num_parts, NULL, 1};
+    scree_work_reduce_args args = {s->buffers->work_sums, num_parts, NULL};
     for (int64_t num_sums = 0; num_sums != 1;)
     {
         num_sums = args.num_parts > 1 ? scree_count_blocks(args.num_parts, SCREE_SUM_FAN_IN) : 1;
@@ -216,28 +202,45 @@ static void reduce_work(const scree_simulation *s, int64_t num_parts)
         scree_work_reduce_launch_on(s->device, args, num_sums);
         args.parts = args.sums;
         args.num_parts = num_sums;
-        args.per_part *= SCREE_SUM_FAN_IN;
         num_parts += num_sums;
     }
+}
+
+/// Where the contacts of the step before stand.
+static scree_old_contacts old_contacts_of(const scree_simulation *s)
+{
+    const scree_step_buffers *b = s->buffers;
+    const int64_t num_bodies = s->particles.num_particles + s->num_walls;
+    scree_old_contacts old;
+    old.elastic_energy = s->old_contacts.elastic_energy;
+    old.spring_energy = s->old_contacts.spring_energy;
+    old.is_continued = b->is_continued;
+    old.first_of_pair = b->has_old_groups ? NULL : s->old_contacts.first_of_pair;
+    old.group_begin = b->old_groups;
+    old.group_end = b->old_groups + num_bodies;
+    return old;
 }
 
 void scree_sum_work(scree_simulation *simulation)
 {
     const scree_step_buffers *b = simulation->buffers;
-    const int64_t num_blocks = scree_count_blocks(simulation->contacts.num_contacts, SCREE_WORK_BLOCK);
-    const int64_t num_ended = count_ended_blocks(simulation);
     scree_work_args work;
     work.contacts = scree_contact_list_view(&simulation->contacts);
+    work.own_begin = simulation->broad_phase.own_begin;
+    work.old = old_contacts_of(simulation);
     work.bodies = scree_step_body_motion(b);
+    work.ids = work.places = NULL;
     work.inertia = simulation->particles.inertia;
     work.laws = simulation->laws;
     work.num_materials = simulation->num_materials;
     work.num_particles = (int32_t)simulation->particles.num_particles;
     work.time_step = (scree_real)simulation->time_step;
-    work.sums = b->work_sums + num_ended;
+    work.sums = b->work_sums;
+    work.of_bodies = NULL;
+    const int64_t num_blocks = scree_count_blocks(work.num_particles, SCREE_WORK_BLOCK);
     scree_work_launch_on(simulation->device, work, num_blocks);
     scree_device_join(simulation->device);
-    reduce_work(simulation, num_ended + num_blocks);
+    reduce_work(simulation, num_blocks);
 }
 
 void scree_fetch_board(scree_simulation *simulation)

@@ -154,7 +154,7 @@ static scree_status copy_buffers(scree_simulation *there, const scree_simulation
     b->broad_phase_walls = scree_device_alloc(device, num_walls + 1, sizeof *b->broad_phase_walls);
     b->wall_input = calloc((size_t)num_walls + 1, sizeof *b->wall_input);
     if (!is_complete || b->broad_phase_walls == NULL || b->wall_input == NULL ||
-        scree_step_board_create(b, num_walls) != SCREE_OK)
+        scree_step_board_create(b, num_particles, num_walls) != SCREE_OK)
         return SCREE_OUT_OF_MEMORY;
     for (int64_t w = 0; w < num_walls; ++w)
         b->wall_input[w].tree = there->views_here[from->shape[num_particles + w]].tree;

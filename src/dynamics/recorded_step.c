@@ -53,8 +53,6 @@ static scree_halt play(const scree_simulation *s, const scree_recording *recordi
     const scree_step_buffers *b = s->buffers;
     memset(b->live_here, 0, sizeof *b->live_here);
     b->live_here->num_steps = s->step - b->searched_step;
-    b->live_here->num_old_contacts = s->old_contacts.num_contacts;
-    b->live_here->max_old_contacts = b->max_recorded;
     // if the device fails the board never comes
     b->board_here->live.halt = SCREE_HALT_START;
     scree_device_play(s->device, recording);

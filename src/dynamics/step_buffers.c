@@ -29,7 +29,7 @@ static void *zeros(size_t num_bytes)
     return memory;
 }
 
-scree_status scree_step_board_create(scree_step_buffers *buffers, int64_t num_walls)
+scree_status scree_step_board_create(scree_step_buffers *buffers, int64_t num_particles, int64_t num_walls)
 {
     scree_step_buffers *b = buffers;
     const size_t num_bytes = scree_board_bytes(num_walls), num = (size_t)num_walls + 1;
@@ -38,8 +38,12 @@ scree_status scree_step_board_create(scree_step_buffers *buffers, int64_t num_wa
     b->wall_motion = scree_device_alloc(b->device, (int64_t)num, sizeof *b->wall_motion);
     b->wall_motion_here = scree_device_alloc_host(b->device, num * sizeof *b->wall_motion_here);
     b->live_here = scree_device_alloc_host(b->device, sizeof *b->live_here);
+    // sums of sums, down to one, take less than a 255th of them
+    const int64_t num_blocks = scree_count_blocks(num_particles, SCREE_WORK_BLOCK);
+    const int64_t num_sums = num_blocks + num_blocks / (SCREE_SUM_FAN_IN - 1) + 8;
+    b->work_sums = scree_device_alloc(b->device, num_sums, sizeof *b->work_sums);
     if (b->board == NULL || b->board_here == NULL || b->wall_motion == NULL || b->wall_motion_here == NULL ||
-        b->live_here == NULL)
+        b->live_here == NULL || b->work_sums == NULL)
         return SCREE_OUT_OF_MEMORY;
     scree_device_zero(b->device, b->board, num_bytes);
     b->tally = &b->board->tally;
@@ -68,7 +72,7 @@ scree_status scree_step_buffers_create(scree_simulation *simulation)
     SCREE_ALLOCATE(wall_input, num_walls)
 #undef SCREE_ALLOCATE
     // the simulation's destroy frees what there is
-    if (!is_complete || scree_step_board_create(b, simulation->num_walls) != SCREE_OK) return SCREE_OUT_OF_MEMORY;
+    if (!is_complete || scree_step_board_create(b, simulation->particles.num_particles, simulation->num_walls) != SCREE_OK) return SCREE_OUT_OF_MEMORY;
 
     for (size_t i = 0; i < num_particles; ++i)
     {
@@ -94,7 +98,7 @@ void scree_step_buffers_destroy(scree_simulation *simulation)
     if (b == NULL) return;
     scree_device *device = b->device;
     void *const arrays[] = {b->pose,        b->moving,      b->shape,          b->inverse_radius,    b->searched_pose,
-                            b->travel,      b->moving_wall, b->wall_axes,      b->broad_phase_walls, b->work_sums,
+                            b->travel,      b->wall_axes,      b->broad_phase_walls, b->work_sums,
                             b->load_sums,   b->old_groups,  b->old_of_contact, b->is_continued,      b->sides,
                             b->wall_motion, b->board};
     for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; ++k) scree_device_free(device, arrays[k]);

@@ -37,13 +37,11 @@ typedef struct scree_step_buffers
     scree_wall_motion *wall_motion_here; ///< the same on the CPU, of the present step
 
     // moving walls
-    int32_t *moving_wall;       ///< (num_walls) index among the moving ones, or -1
-    scree_wall_axis *wall_axes; ///< (num_moving_walls)
-    int32_t *moving_wall_here;  ///< the same two on the CPU
-    scree_wall_axis *wall_axes_here;
+    scree_wall_axis *wall_axes;      ///< (num_moving_walls)
+    scree_wall_axis *wall_axes_here; ///< the same on the CPU
+    int32_t *moving_wall_here;       ///< (num_walls) index among the moving ones, or -1, on the CPU
     int32_t num_moving_walls;
-    scree_real *load_sums;
-    int64_t max_load_sums;
+    scree_real *load_sums; ///< of blocks of particles, and of these sums
 
     // contacts
     bool is_old_list_of_same_pairs; ///< old contacts can be found by the index of their candidate pair
@@ -54,8 +52,8 @@ typedef struct scree_step_buffers
     int64_t max_old;
     scree_contact_side *sides;  ///< (num_contacts, 2) on a GPU; else NULL
     int64_t max_sides;          ///< contacts
-    scree_work_sums *work_sums; ///< of blocks of ended contacts, of blocks of contacts, and of these sums
-    int64_t max_work_sums;
+    bool has_old_groups;        ///< old_groups were made for the present step
+    scree_work_sums *work_sums; ///< of blocks of particles, and of these sums
 
     scree_step_board *board;
     scree_step_board *board_here; ///< a copy on the CPU, of the end of the last step
@@ -73,8 +71,8 @@ typedef struct scree_step_buffers
 
 /// Allocates the arrays over bodies; num_walls from the simulation.
 scree_status scree_step_buffers_create(scree_simulation *simulation);
-/// The board, and what is sent to the device in each step.
-scree_status scree_step_board_create(scree_step_buffers *buffers, int64_t num_walls);
+/// The board, what is sent to the device in each step, and the sums that come to the board.
+scree_status scree_step_board_create(scree_step_buffers *buffers, int64_t num_particles, int64_t num_walls);
 /// Axes of the moving walls.
 scree_status scree_wall_axes_create(scree_simulation *simulation);
 void scree_step_buffers_destroy(scree_simulation *simulation);
@@ -111,7 +109,7 @@ void scree_gather_forces(scree_simulation *simulation);
 void scree_correct_motion(scree_simulation *simulation);
 /// Work of the contacts over the step just done.
 void scree_sum_work(scree_simulation *simulation);
-/// Loads of the moving walls by the present contacts; there is room for the sums.
+/// Loads of the moving walls by the present contacts.
 void scree_sum_wall_loads(scree_simulation *simulation);
 /// A copy of the board to the CPU.
 void scree_fetch_board(scree_simulation *simulation);
@@ -120,8 +118,6 @@ void scree_take_board(scree_simulation *simulation);
 
 // What recorded steps share with the others.
 
-/// Room for sums over num_contacts, of those that touch walls.
-scree_status scree_reserve_wall_loads(scree_simulation *simulation, int64_t num_contacts);
 /// scree_update_contacts() for the candidate pairs of the step before, after the lists have changed places.
 void scree_update_contacts_again(scree_simulation *simulation);
 /// What was found of the contacts to the counters.

@@ -64,14 +64,9 @@ static double rate_of(const scree_simulation *s, int32_t wall, const scree_wall_
     return (double)scree_vec3_dot(axis->is_rotating ? state->angular_velocity : state->velocity, axis->direction);
 }
 
-scree_status scree_reserve_wall_loads(scree_simulation *simulation, int64_t num_contacts)
+static int64_t count_parts(const scree_simulation *s)
 {
-    scree_step_buffers *b = simulation->buffers;
-    if (b->num_moving_walls == 0) return SCREE_OK;
-    const int64_t num_parts = scree_count_blocks(num_contacts, SCREE_WALL_LOAD_BLOCK);
-    // sums of sums, down to one, take less than a 255th of them
-    const int64_t num_sums = (num_parts + num_parts / (SCREE_SUM_FAN_IN - 1) + 8) * b->num_moving_walls;
-    return scree_device_reserve(simulation->device, &b->load_sums, &b->max_load_sums, num_sums, sizeof *b->load_sums);
+    return scree_count_blocks(s->particles.num_particles, SCREE_WALL_LOAD_BLOCK);
 }
 
 void scree_sum_wall_loads(scree_simulation *simulation)
@@ -80,19 +75,21 @@ void scree_sum_wall_loads(scree_simulation *simulation)
     const scree_step_buffers *b = s->buffers;
     const int64_t num_moving = b->num_moving_walls;
     if (num_moving == 0) return;
-    int64_t num_parts = scree_count_blocks(s->contacts.num_contacts, SCREE_WALL_LOAD_BLOCK);
+    int64_t num_parts = count_parts(s);
     scree_wall_load_args args;
     args.contacts = scree_contact_list_view(&s->contacts);
+    args.pairs = s->broad_phase.pairs;
+    args.row_begin = s->broad_phase.row_begin;
+    args.row_pairs = s->broad_phase.row_pairs;
+    args.ids = NULL;
     args.pose = b->pose;
-    args.moving = b->moving_wall;
     args.axes = b->wall_axes;
-    args.num_moving = b->num_moving_walls;
-    args.num_particles = (int32_t)s->particles.num_particles;
+    args.num_moving = num_moving;
     args.sums = b->load_sums;
-    scree_wall_load_launch_on(s->device, args, num_parts);
+    scree_wall_load_launch_on(s->device, args, num_parts * num_moving);
 
     // in groups of always the same ones, until one is left
-    scree_wall_load_reduce_args reduce = {b->load_sums, num_parts, num_moving, NULL, 1};
+    scree_wall_load_reduce_args reduce = {b->load_sums, num_parts, num_moving, NULL};
     for (int64_t num_sums = 0; num_sums != 1;)
     {
         num_sums = reduce.num_parts > 1 ? scree_count_blocks(reduce.num_parts, SCREE_SUM_FAN_IN) : 1;
@@ -100,7 +97,6 @@ void scree_sum_wall_loads(scree_simulation *simulation)
         scree_wall_load_reduce_launch_on(s->device, reduce, num_sums * num_moving);
         reduce.parts = reduce.sums;
         reduce.num_parts = num_sums;
-        reduce.per_part *= SCREE_SUM_FAN_IN;
         num_parts += num_sums;
     }
 }
@@ -138,21 +134,23 @@ scree_status scree_wall_axes_create(scree_simulation *simulation)
     const int64_t num = simulation->num_walls;
     b->moving_wall_here = calloc((size_t)num + 1, sizeof *b->moving_wall_here);
     b->wall_axes_here = calloc((size_t)num + 1, sizeof *b->wall_axes_here);
-    b->moving_wall = scree_device_alloc(simulation->device, num + 1, sizeof *b->moving_wall);
     b->wall_axes = scree_device_alloc(simulation->device, num + 1, sizeof *b->wall_axes);
-    if (b->moving_wall_here == NULL || b->wall_axes_here == NULL || b->moving_wall == NULL || b->wall_axes == NULL)
-        return SCREE_OUT_OF_MEMORY;
+    if (b->moving_wall_here == NULL || b->wall_axes_here == NULL || b->wall_axes == NULL) return SCREE_OUT_OF_MEMORY;
     for (int32_t w = 0; w < simulation->num_walls; ++w)
     {
         const scree_wall_def *def = simulation->scene->walls + w;
         b->moving_wall_here[w] = -1;
         if (def->motion.kind == SCREE_MOTION_FIXED) continue;
         b->wall_axes_here[b->num_moving_walls] = axis_of(def);
+        b->wall_axes_here[b->num_moving_walls].body = (int32_t)simulation->particles.num_particles + w;
         b->moving_wall_here[w] = b->num_moving_walls++;
     }
-    scree_device_write(simulation->device, b->moving_wall, b->moving_wall_here, (size_t)num * sizeof *b->moving_wall);
     scree_device_write(simulation->device, b->wall_axes, b->wall_axes_here, (size_t)num * sizeof *b->wall_axes);
-    return SCREE_OK;
+    // sums of sums, down to one, take less than a 255th of them
+    const int64_t num_parts = count_parts(simulation);
+    const int64_t num_sums = (num_parts + num_parts / (SCREE_SUM_FAN_IN - 1) + 8) * b->num_moving_walls;
+    b->load_sums = scree_device_alloc(simulation->device, num_sums + 1, sizeof *b->load_sums);
+    return b->load_sums != NULL ? SCREE_OK : SCREE_OUT_OF_MEMORY;
 }
 
 scree_wall_load scree_simulation_wall_load(const scree_simulation *simulation, int32_t wall)

@@ -16,11 +16,10 @@ SCREE_DECLARE_LAUNCH(scree_gather)           ///< over particles
 SCREE_DECLARE_LAUNCH(scree_collision)        ///< over contacts
 SCREE_DECLARE_LAUNCH(scree_ended_flag)       ///< over old contacts
 SCREE_DECLARE_LAUNCH(scree_ended_collisions) ///< over old contacts
-SCREE_DECLARE_LAUNCH(scree_wall_load)        ///< over blocks of SCREE_WALL_LOAD_BLOCK contacts
-SCREE_DECLARE_LAUNCH(scree_work)             ///< over blocks of SCREE_WORK_BLOCK contacts
+SCREE_DECLARE_LAUNCH(scree_wall_load)        ///< over blocks of SCREE_WALL_LOAD_BLOCK particles, times moving walls
+SCREE_DECLARE_LAUNCH(scree_work)             ///< over blocks of SCREE_WORK_BLOCK particles
 SCREE_DECLARE_LAUNCH(scree_work_reduce)      ///< over groups of SCREE_SUM_FAN_IN parts
-SCREE_DECLARE_LAUNCH(scree_ended)            ///< over blocks of SCREE_WORK_BLOCK old contacts
 SCREE_DECLARE_LAUNCH(scree_wall_load_reduce) ///< over groups of SCREE_SUM_FAN_IN parts, times moving walls
-SCREE_DECLARE_LAUNCH(scree_indentations)     ///< over blocks of SCREE_WORK_BLOCK contacts
+SCREE_DECLARE_LAUNCH(scree_indentations)     ///< over blocks of SCREE_CONTACT_BLOCK contacts
 
 #endif

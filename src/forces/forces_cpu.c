@@ -3,7 +3,6 @@
 SCREE_DEFINE_LAUNCH(scree_collision)
 SCREE_DEFINE_LAUNCH(scree_wall_load)
 SCREE_DEFINE_LAUNCH(scree_work_reduce)
-SCREE_DEFINE_LAUNCH(scree_ended)
 SCREE_DEFINE_LAUNCH(scree_wall_load_reduce)
 SCREE_DEFINE_LAUNCH(scree_indentations)
 SCREE_DEFINE_LAUNCH(scree_ended_flag)

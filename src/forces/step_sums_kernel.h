@@ -1,5 +1,5 @@
 /// \file step_sums_kernel.h
-/// Sums over contacts beyond their blocks: always the same ones in the same order, wherever they are made.
+/// Sums over bodies: always the same ones in the same order, wherever they are made.
 #ifndef SCREE_STEP_SUMS_KERNEL_H
 #define SCREE_STEP_SUMS_KERNEL_H
 
@@ -8,13 +8,14 @@
 
 /// Sums that are added up by one index.
 #define SCREE_SUM_FAN_IN 256
+/// Contacts of which one index finds the largest.
+#define SCREE_CONTACT_BLOCK 256
 
 typedef struct scree_work_reduce_args
 {
     const scree_work_sums *parts; ///< (num_parts)
     int64_t num_parts;
     scree_work_sums *sums; ///< (one for SCREE_SUM_FAN_IN parts each, at least one) out
-    int64_t per_part;      ///< blocks of contacts that a part is the sum of
 } scree_work_reduce_args;
 
 /// Parts k SCREE_SUM_FAN_IN and on.
@@ -26,7 +27,7 @@ SCREE_FN void scree_work_reduce_team_at(scree_work_reduce_args a, const scree_te
     int64_t num = a.num_parts - begin;
     if (num > SCREE_SUM_FAN_IN) num = SCREE_SUM_FAN_IN;
     for (int64_t n = scree_team_lane(team); n < num; n += scree_team_size(team))
-        scree_work_add(&block, n, a.parts[begin + n]);
+        scree_work_add_item(&block, n, a.parts[begin + n]);
     const scree_work_sums sums = scree_work_total(team, &block);
     if (scree_team_leads(team)) a.sums[k] = sums;
 }
@@ -37,47 +38,12 @@ SCREE_FN void scree_work_reduce_at(scree_work_reduce_args a, int64_t k)
     scree_work_reduce_team_at(a, &team, k);
 }
 
-typedef struct scree_ended_args
-{
-    const scree_real *elastic_energy; ///< [J] (num_old)
-    const scree_real *spring_energy;  ///< [J] (num_old)
-    const uint8_t *is_continued;      ///< (num_old)
-    int64_t num_old;
-    scree_work_sums *sums; ///< (num_blocks) out
-} scree_ended_args;
-
-/// Energy that ended contacts had stored: lost by the normal springs (hysteresis) and the tangential ones (friction).
-/// Block b of SCREE_WORK_BLOCK old contacts.
-SCREE_FN void scree_ended_team_at(scree_ended_args a, const scree_team *team, int64_t b)
-{
-    scree_work_block block;
-    scree_work_begin(&block);
-    const int64_t begin = b * SCREE_WORK_BLOCK;
-    int64_t num = a.num_old - begin;
-    if (num > SCREE_WORK_BLOCK) num = SCREE_WORK_BLOCK;
-    for (int64_t n = scree_team_lane(team); n < num; n += scree_team_size(team))
-    {
-        if (a.is_continued[begin + n]) continue;
-        scree_team_sum_add(&block.hysteresis, n, a.elastic_energy[begin + n]);
-        scree_team_sum_add(&block.friction, n, a.spring_energy[begin + n]);
-    }
-    const scree_work_sums sums = scree_work_total(team, &block);
-    if (scree_team_leads(team)) a.sums[b] = sums;
-}
-
-SCREE_FN void scree_ended_at(scree_ended_args a, int64_t b)
-{
-    const scree_team team = scree_team_alone();
-    scree_ended_team_at(a, &team, b);
-}
-
 typedef struct scree_wall_load_reduce_args
 {
     const scree_real *parts; ///< (num_parts, num_moving)
     int64_t num_parts;
     int64_t num_moving;
     scree_real *sums; ///< (one for SCREE_SUM_FAN_IN parts each, at least one, num_moving) out
-    int64_t per_part; ///< blocks of contacts that a part is the sum of
 } scree_wall_load_reduce_args;
 
 /// Moving wall k % num_moving of sum k / num_moving.
@@ -107,12 +73,12 @@ typedef struct scree_indentations_args
     scree_maximum *largest; ///< [m]
 } scree_indentations_args;
 
-/// Block b of SCREE_WORK_BLOCK contacts.
+/// Block b of SCREE_CONTACT_BLOCK contacts.
 SCREE_FN void scree_indentations_team_at(scree_indentations_args a, const scree_team *team, int64_t b)
 {
-    const int64_t begin = b * SCREE_WORK_BLOCK;
+    const int64_t begin = b * SCREE_CONTACT_BLOCK;
     int64_t num = a.num_contacts - begin;
-    if (num > SCREE_WORK_BLOCK) num = SCREE_WORK_BLOCK;
+    if (num > SCREE_CONTACT_BLOCK) num = SCREE_CONTACT_BLOCK;
     scree_real largest = 0;
     for (int64_t n = scree_team_lane(team); n < num; n += scree_team_size(team))
         largest = scree_max(largest, a.indentation[begin + n]);

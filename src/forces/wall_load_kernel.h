@@ -1,32 +1,34 @@
 /// \file wall_load_kernel.h
 /// What moving walls exert on the particles along their motion: the torque about the axis of one that rotates, the
-/// force along the velocity of one that translates. Contacts are summed in fixed blocks, so the sum does not depend on
-/// the number of threads, nor on which candidate pairs there are.
+/// force along the velocity of one that translates. Particles are summed in blocks of following ids, so the sum does not
+/// depend on the number of threads, nor on which candidate pairs there are, nor on the order of the contacts.
 #ifndef SCREE_WALL_LOAD_KERNEL_H
 #define SCREE_WALL_LOAD_KERNEL_H
 
 #include "contact/contact_list.h"
-#include "core/team_sum.h"
 
-/// Contacts summed by one index.
-#define SCREE_WALL_LOAD_BLOCK 1024
+/// Particles summed by one index; most of them do not touch the wall.
+#define SCREE_WALL_LOAD_BLOCK 64
 
 /// The motion that a load is measured along.
 typedef struct scree_wall_axis
 {
     scree_vec3 direction; ///< [1] unit, of the axis or of the velocity
     scree_vec3 centre;    ///< [m] point of the axis
+    int32_t body;         ///< number of the wall among all bodies
     bool is_rotating;
 } scree_wall_axis;
 
 typedef struct scree_wall_load_args
 {
     scree_contact_list contacts;
-    const scree_pose *pose;      ///< (num_bodies)
-    const int32_t *moving;       ///< (num_walls) index of a wall among the moving ones, or -1
-    const scree_wall_axis *axes; ///< (num_moving)
-    int32_t num_moving;
-    int32_t num_particles;
+    const scree_candidate_pair *pairs; ///< (num_pairs)
+    const int64_t *row_begin;          ///< (num_bodies + 1) rows of candidate pairs
+    const int32_t *row_pairs;          ///< (2 num_pairs) that of a wall ascends in the ids of the first bodies
+    const int32_t *ids;                ///< (num_bodies) of the bodies, or NULL: each is its own
+    const scree_pose *pose;            ///< (num_bodies)
+    const scree_wall_axis *axes;       ///< (num_moving)
+    int64_t num_moving;
     scree_real *sums; ///< (num_blocks, num_moving) out: [N m] or [N]
 } scree_wall_load_args;
 
@@ -43,32 +45,33 @@ SCREE_FN scree_real scree_wall_load_of_contact(const scree_wall_load_args *a, in
     return scree_vec3_dot(along, axis.direction);
 }
 
-/// Block b of SCREE_WALL_LOAD_BLOCK contacts, moving wall by moving wall.
-SCREE_FN void scree_wall_load_team_at(scree_wall_load_args a, const scree_team *team, int64_t b)
+/// Id of the first body of entry k of the rows.
+SCREE_FN int32_t scree_wall_load_id(const scree_wall_load_args *a, int64_t k)
 {
-    const int64_t begin = b * SCREE_WALL_LOAD_BLOCK;
-    int64_t num = a.contacts.num_contacts - begin;
-    if (num > SCREE_WALL_LOAD_BLOCK) num = SCREE_WALL_LOAD_BLOCK;
-    for (int32_t m = 0; m < a.num_moving; ++m)
-    {
-        scree_team_real_sum sum;
-        scree_team_sum_zero(&sum);
-        SCREE_TURN_BY_TURN
-        for (int64_t n = scree_team_lane(team); n < num; n += scree_team_size(team))
-        {
-            const int32_t wall = a.contacts.bodies[begin + n].j - a.num_particles;
-            if (wall < 0 || a.moving[wall] != m) continue;
-            scree_team_sum_add(&sum, n, scree_wall_load_of_contact(&a, begin + n, a.axes[m]));
-        }
-        const scree_real total = scree_team_sum_total(team, &sum);
-        if (scree_team_leads(team)) a.sums[b * a.num_moving + m] = total;
-    }
+    const int32_t first = a->pairs[a->row_pairs[k]].i;
+    return a->ids ? a->ids[first] : first;
 }
 
-SCREE_FN void scree_wall_load_at(scree_wall_load_args a, int64_t b)
+/// Moving wall k % num_moving of block k / num_moving of SCREE_WALL_LOAD_BLOCK particles.
+SCREE_FN void scree_wall_load_at(scree_wall_load_args a, int64_t k)
 {
-    const scree_team team = scree_team_alone();
-    scree_wall_load_team_at(a, &team, b);
+    const scree_wall_axis axis = a.axes[k % a.num_moving];
+    const int64_t begin = k / a.num_moving * SCREE_WALL_LOAD_BLOCK, end = a.row_begin[axis.body + 1];
+    int64_t low = a.row_begin[axis.body], high = end;
+    while (low < high)
+    {
+        const int64_t middle = low + (high - low) / 2;
+        if (scree_wall_load_id(&a, middle) < begin) low = middle + 1;
+        else high = middle;
+    }
+    scree_real sum = 0;
+    for (; low < end && scree_wall_load_id(&a, low) < begin + SCREE_WALL_LOAD_BLOCK; ++low)
+    {
+        const int32_t p = a.row_pairs[low];
+        for (int32_t c = a.contacts.first_of_pair[p]; c < a.contacts.first_of_pair[p + 1]; ++c)
+            sum += scree_wall_load_of_contact(&a, c, axis);
+    }
+    a.sums[k] = sum;
 }
 
 #endif

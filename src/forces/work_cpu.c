@@ -1,8 +1,10 @@
 /// \file work_cpu.c
-/// Work of the contacts on the CPU. Those that act in points are worked on in groups of lanes (lanes.h), and added
-/// to the lanes of their sums.
+/// Work of the contacts on the CPU. Those that act in points are worked on in groups of lanes (lanes.h), whatever their
+/// first bodies are, and then added to the sums of these one by one.
 #include "forces/forces.h"
 #include "forces/motion_lanes.h"
+
+#include <string.h>
 
 SCREE_DEFINE_LAUNCH_ON(scree_work)
 
@@ -56,66 +58,174 @@ static void work_of_lanes(scree_work_group *restrict g, const scree_work_args *r
     }
 }
 
+/// The sums of following bodies, whose contacts follow each other too.
+typedef struct scree_work_range
+{
+    int64_t begin, end; ///< bodies, at most SCREE_WORK_BLOCK
+    scree_real hysteresis[SCREE_WORK_BLOCK], damping[SCREE_WORK_BLOCK];
+    scree_real friction[SCREE_WORK_BLOCK], input[SCREE_WORK_BLOCK];
+    scree_real largest[SCREE_LANES]; ///< [1/s^2] largest inverse of a step's square so far
+    scree_real smallest_step_squared;
+} scree_work_range;
+
+static void add_to_range(scree_work_range *r, int64_t i, scree_work_sums one)
+{
+    r->hysteresis[i - r->begin] += one.hysteresis;
+    r->damping[i - r->begin] += one.damping;
+    r->friction[i - r->begin] += one.friction;
+    r->input[i - r->begin] += one.input;
+    r->smallest_step_squared = scree_min(r->smallest_step_squared, one.smallest_step_squared);
+}
+
 /// Moving walls among the second bodies of a group work on the first ones.
-static void add_work_of_walls(const scree_work_group *g, const scree_work_args *a, int64_t begin, int64_t n,
-                              scree_work_block *block)
+static void add_work_of_walls(const scree_work_group *g, const scree_work_args *a, int64_t first, scree_work_range *r)
 {
     for (int l = 0; l < SCREE_LANES; ++l)
     {
         if (g->j.body[l] < a->num_particles) continue;
         const scree_vec3 point = scree_vec3_add(scree_lanes_get(&g->i.position, l), scree_lanes_get(&g->arm, l));
         const scree_vec3 arm_j = scree_vec3_sub(point, scree_lanes_get(&g->j.position, l));
-        scree_team_sum_add(&block->input, n + l, scree_work_of_wall(a, begin + n + l, g->j.body[l], arm_j));
+        r->input[g->i.body[l] - r->begin] += scree_work_of_wall(a, first + l, g->j.body[l], arm_j);
     }
 }
 
-/// Contacts n .. n + SCREE_LANES - 1 of the block that starts at contact `begin`. `largest` holds the largest inverse
-/// of a step's square so far.
-SCREE_LANES_FUNCTION static void add_group(const scree_work_args *restrict a, int64_t begin, int64_t n,
-                                           scree_work_block *restrict block, scree_real *restrict largest)
+/// Contacts first .. first + SCREE_LANES - 1 to the sums of their first bodies.
+SCREE_LANES_FUNCTION static void add_group(const scree_work_args *restrict a, int64_t first,
+                                           scree_work_range *restrict r)
 {
     scree_work_group g;
-    work_of_lanes(&g, a, begin + n);
-    scree_real *restrict hysteresis = block->hysteresis.lane + n % SCREE_SUM_LANES;
-    scree_real *restrict damping = block->damping.lane + n % SCREE_SUM_LANES;
-    scree_real *restrict friction = block->friction.lane + n % SCREE_SUM_LANES;
+    work_of_lanes(&g, a, first);
     for (int l = 0; l < SCREE_LANES; ++l)
     {
-        hysteresis[l] += g.hysteresis[l];
-        damping[l] += g.damping[l] + g.viscous[l];
-        friction[l] += g.friction[l];
-        largest[l] = scree_max(largest[l], g.inverse_step_squared[l]);
+        g.damping[l] += g.viscous[l];
+        r->largest[l] = scree_max(r->largest[l], g.inverse_step_squared[l]);
     }
     int32_t num_walls = 0;
-    for (int l = 0; l < SCREE_LANES; ++l) num_walls += g.j.body[l] >= a->num_particles;
-    if (num_walls > 0) add_work_of_walls(&g, a, begin, n, block);
+    for (int l = 0; l < SCREE_LANES; ++l)
+    {
+        const int64_t k = g.i.body[l] - r->begin;
+        r->hysteresis[k] += g.hysteresis[l];
+        r->damping[k] += g.damping[l];
+        r->friction[k] += g.friction[l];
+        num_walls += g.j.body[l] >= a->num_particles;
+    }
+    if (num_walls > 0) add_work_of_walls(&g, a, first, r);
 }
 
-/// Block b as scree_work_at() has it.
-static void work_of_block(const scree_work_args *a, int64_t b)
+/// What contacts of the range left that ended: in most ranges and steps none does.
+static void add_ended(const scree_work_args *a, scree_work_range *r)
+{
+    const scree_old_contacts *old = &a->old;
+    if (old->first_of_pair != NULL)
+    {
+        const int32_t first = old->first_of_pair[a->own_begin[r->begin]];
+        const int32_t num = old->first_of_pair[a->own_begin[r->end]] - first;
+        if (memchr(old->is_continued + first, 0, (size_t)num) == NULL) return;
+    }
+    for (int64_t i = r->begin; i < r->end; ++i)
+    {
+        scree_work_sums ended = scree_work_nothing();
+        ended.hysteresis = r->hysteresis[i - r->begin];
+        ended.friction = r->friction[i - r->begin];
+        scree_work_add_ended(&ended, a, i);
+        r->hysteresis[i - r->begin] = ended.hysteresis;
+        r->friction[i - r->begin] = ended.friction;
+    }
+}
+
+/// Bodies begin .. end - 1.
+static void sum_range(const scree_work_args *a, scree_work_range *r, int64_t begin, int64_t end)
+{
+    memset(r, 0, sizeof *r);
+    r->begin = begin;
+    r->end = end;
+    r->smallest_step_squared = SCREE_REAL_MAX;
+    int64_t c = a->contacts.first_of_pair[a->own_begin[begin]];
+    const int64_t end_contact = a->contacts.first_of_pair[a->own_begin[end]];
+    if (a->contacts.acts_in_points && c + SCREE_LANES <= end_contact)
+    {
+        for (; c + SCREE_LANES <= end_contact; c += SCREE_LANES) add_group(a, c, r);
+        // the smallest of the quotients is the quotient of the largest: rounding keeps their order
+        for (int l = 0; l < SCREE_LANES; ++l)
+            r->smallest_step_squared = scree_min(r->smallest_step_squared, 1 / r->largest[l]);
+    }
+    for (; c < end_contact; ++c) add_to_range(r, a->contacts.bodies[c].i, scree_work_of_contact(a, c));
+    add_ended(a, r);
+}
+
+/// Sums of the range in lanes, as scree_work_at() has them.
+static scree_work_sums total_of_range(const scree_work_range *restrict r)
 {
     scree_work_block block;
     scree_work_begin(&block);
-    const int64_t begin = b * SCREE_WORK_BLOCK, rest = a->contacts.num_contacts - begin;
-    const int64_t num = rest < SCREE_WORK_BLOCK ? rest : SCREE_WORK_BLOCK;
+    const int64_t num = r->end - r->begin;
     int64_t n = 0;
-    scree_real largest[SCREE_LANES] = {0};
-    for (; n + SCREE_LANES <= num; n += SCREE_LANES) add_group(a, begin, n, &block, largest);
-    // the smallest of the quotients is the quotient of the largest: rounding keeps their order
-    for (int l = 0; l < SCREE_LANES && n > 0; ++l)
-        block.smallest_step_squared = scree_min(block.smallest_step_squared, 1 / largest[l]);
-    for (; n < num; ++n) scree_work_add(&block, n, scree_work_of_contact(a, begin + n));
+    for (; n + SCREE_SUM_LANES <= num; n += SCREE_SUM_LANES)
+        for (int l = 0; l < SCREE_SUM_LANES; ++l)
+        {
+            block.hysteresis.lane[l] += r->hysteresis[n + l];
+            block.damping.lane[l] += r->damping[n + l];
+            block.friction.lane[l] += r->friction[n + l];
+            block.input.lane[l] += r->input[n + l];
+        }
+    for (; n < num; ++n)
+    {
+        scree_team_sum_add(&block.hysteresis, n, r->hysteresis[n]);
+        scree_team_sum_add(&block.damping, n, r->damping[n]);
+        scree_team_sum_add(&block.friction, n, r->friction[n]);
+        scree_team_sum_add(&block.input, n, r->input[n]);
+    }
+    block.smallest_step_squared = r->smallest_step_squared;
     const scree_team team = scree_team_alone();
-    a->sums[b] = scree_work_total(&team, &block);
+    return scree_work_total(&team, &block);
+}
+
+static int64_t end_of_block(const scree_work_args *a, int64_t b)
+{
+    const int64_t end = (b + 1) * SCREE_WORK_BLOCK;
+    return end < a->num_particles ? end : a->num_particles;
+}
+
+/// Sums of the bodies of a block of places to where their ids are; that the smallest step may be of any of them.
+static void scatter_block(const scree_work_args *a, int64_t b)
+{
+    scree_work_range r;
+    sum_range(a, &r, b * SCREE_WORK_BLOCK, end_of_block(a, b));
+    for (int64_t i = r.begin; i < r.end; ++i)
+    {
+        const int64_t k = i - r.begin;
+        const scree_work_sums of_body = {.damping = r.damping[k],
+                                         .friction = r.friction[k],
+                                         .hysteresis = r.hysteresis[k],
+                                         .input = r.input[k],
+                                         .smallest_step_squared = r.smallest_step_squared};
+        a->of_bodies[a->ids[i]] = of_body;
+    }
 }
 
 void scree_work_launch(scree_work_args args, int64_t num)
 {
-    const bool has_lanes = args.contacts.acts_in_points;
-#pragma omp parallel for schedule(static) if (num * SCREE_WORK_BLOCK >= SCREE_LAUNCH_MIN)
-    for (int64_t b = 0; b < num; ++b)
+#pragma omp parallel if (num > 1)
     {
-        if (has_lanes) work_of_block(&args, b);
-        else scree_work_at(args, b);
+        if (args.ids != NULL)
+        {
+#pragma omp for schedule(static)
+            for (int64_t b = 0; b < num; ++b) scatter_block(&args, b);
+        }
+#pragma omp for schedule(static)
+        for (int64_t b = 0; b < num; ++b)
+        {
+            scree_work_range r;
+            if (args.ids == NULL)
+            {
+                sum_range(&args, &r, b * SCREE_WORK_BLOCK, end_of_block(&args, b));
+                args.sums[b] = total_of_range(&r);
+            }
+            else
+            {
+                const scree_work_reduce_args reduce = {args.of_bodies, args.num_particles, args.sums};
+                scree_work_reduce_at(reduce, b);
+            }
+        }
     }
 }

@@ -1,5 +1,7 @@
 /// \file work_kernel.h
-/// Where the work of the contacts goes in one step, and the smallest critical time step over them.
+/// Where the work of the contacts goes in one step, and the smallest critical time step over them. Contacts are summed
+/// up for each first body by itself, and bodies in blocks of following ids, so that no sum depends on the order of the
+/// contacts.
 /// The work of a step is force times velocity at the same moment: in velocity Verlet that is exactly the change of
 /// kinetic energy between the half steps, so the balance of a run shows errors of the rotation and of the bookkeeping
 /// only.
@@ -9,13 +11,13 @@
 #include "core/team_sum.h"
 #include "forces/contact_force_kernel.h"
 
-/// Contacts whose sum is made by one index.
+/// Particles whose sum is made by one index.
 #define SCREE_WORK_BLOCK 256
 
 /// Blocks of so many items that hold `num`.
 SCREE_FN int64_t scree_count_blocks(int64_t num, int64_t size) { return (num + size - 1) / size; }
 
-/// Sums over one block of contacts.
+/// Sums over contacts.
 typedef struct scree_work_sums
 {
     scree_real damping;               ///< [J] dissipated by damping
@@ -25,16 +27,32 @@ typedef struct scree_work_sums
     scree_real smallest_step_squared; ///< [s^2] smallest m_eff/k_eff
 } scree_work_sums;
 
+/// Where the contacts of the step before stand, by their first body.
+typedef struct scree_old_contacts
+{
+    const scree_real *elastic_energy; ///< [J] (num_old)
+    const scree_real *spring_energy;  ///< [J] (num_old)
+    const uint8_t *is_continued;      ///< (num_old)
+    const int32_t *first_of_pair;     ///< (num_pairs + 1) if the candidate pairs are the same, else NULL: then
+    const int32_t *group_begin;       ///< (num_bodies) first one of a body
+    const int32_t *group_end;         ///< (num_bodies) the one behind its last one
+} scree_old_contacts;
+
 typedef struct scree_work_args
 {
     scree_contact_list contacts;
+    const int32_t *own_begin; ///< (num_bodies + 1) first candidate pair in which a body is the first one
+    scree_old_contacts old;
     scree_body_motion bodies;  ///< with the velocities of the end of the step
+    const int32_t *ids;        ///< (num_bodies) of the bodies, or NULL: each is its own
+    const int32_t *places;     ///< (num_bodies) the body of each id, or NULL
     const scree_vec3 *inertia; ///< [kg m^2] (num_particles) principal moments
     const scree_force_law *laws;
     int32_t num_materials;
     int32_t num_particles;
     scree_real time_step;
     scree_work_sums *sums; ///< (num_blocks) out
+    scree_work_sums *of_bodies; ///< (num_particles) by id, scratch of the CPU if there are ids
 } scree_work_args;
 
 /// What body b adds to 1/m_eff at `arm` along n: 1/m + (r x n)^T I^-1 (r x n).
@@ -73,7 +91,7 @@ SCREE_FN scree_work_terms scree_work_terms_make(scree_vec3 n, scree_vec3 v, scre
     return terms;
 }
 
-/// The sums of a block while they are made.
+/// The sums of a group while they are made.
 typedef struct scree_work_block
 {
     scree_team_real_sum damping, friction, hysteresis, input;
@@ -89,8 +107,8 @@ SCREE_FN void scree_work_begin(scree_work_block *block)
     block->smallest_step_squared = SCREE_REAL_MAX;
 }
 
-/// Item n of the block.
-SCREE_FN void scree_work_add(scree_work_block *block, int64_t n, scree_work_sums one)
+/// Item n of the group.
+SCREE_FN void scree_work_add_item(scree_work_block *block, int64_t n, scree_work_sums one)
 {
     scree_team_sum_add(&block->damping, n, one.damping);
     scree_team_sum_add(&block->friction, n, one.friction);
@@ -99,7 +117,7 @@ SCREE_FN void scree_work_add(scree_work_block *block, int64_t n, scree_work_sums
     block->smallest_step_squared = scree_min(block->smallest_step_squared, one.smallest_step_squared);
 }
 
-/// The whole block, to all threads of the team.
+/// The whole group, to all threads of the team.
 SCREE_FN scree_work_sums scree_work_total(const scree_team *team, scree_work_block *block)
 {
     scree_work_sums sums;
@@ -181,17 +199,59 @@ SCREE_FN scree_work_sums scree_work_of_contact(const scree_work_args *a, int64_t
     return one;
 }
 
-/// Block b of SCREE_WORK_BLOCK contacts.
+SCREE_FN scree_work_sums scree_work_nothing(void)
+{
+    const scree_work_sums nothing = {0, 0, 0, 0, SCREE_REAL_MAX};
+    return nothing;
+}
+
+SCREE_FN void scree_work_add(scree_work_sums *sums, scree_work_sums one)
+{
+    sums->damping += one.damping;
+    sums->friction += one.friction;
+    sums->hysteresis += one.hysteresis;
+    sums->input += one.input;
+    sums->smallest_step_squared = scree_min(sums->smallest_step_squared, one.smallest_step_squared);
+}
+
+/// Adds the energy that old contacts of body i had stored which ended: lost by the normal springs (hysteresis) and the
+/// tangential ones (friction).
+SCREE_FN void scree_work_add_ended(scree_work_sums *sums, const scree_work_args *a, int64_t i)
+{
+    const scree_old_contacts *old = &a->old;
+    const bool has_same_pairs = old->first_of_pair;
+    const int32_t begin = has_same_pairs ? old->first_of_pair[a->own_begin[i]] : old->group_begin[i];
+    const int32_t end = has_same_pairs ? old->first_of_pair[a->own_begin[i + 1]] : old->group_end[i];
+    for (int32_t o = begin; o < end; ++o)
+    {
+        if (old->is_continued[o]) continue;
+        sums->hysteresis += old->elastic_energy[o];
+        sums->friction += old->spring_energy[o];
+    }
+}
+
+/// The contacts in which body i is the first one.
+SCREE_FN scree_work_sums scree_work_of_body(const scree_work_args *a, int64_t i)
+{
+    scree_work_sums sums = scree_work_nothing();
+    const int32_t end = a->contacts.first_of_pair[a->own_begin[i + 1]];
+    for (int32_t c = a->contacts.first_of_pair[a->own_begin[i]]; c < end; ++c)
+        scree_work_add(&sums, scree_work_of_contact(a, c));
+    scree_work_add_ended(&sums, a, i);
+    return sums;
+}
+
+/// Block b of SCREE_WORK_BLOCK particles.
 SCREE_FN void scree_work_team_at(scree_work_args a, const scree_team *team, int64_t b)
 {
     scree_work_block block;
     scree_work_begin(&block);
     const int64_t begin = b * SCREE_WORK_BLOCK;
-    int64_t num = a.contacts.num_contacts - begin;
+    int64_t num = a.num_particles - begin;
     if (num > SCREE_WORK_BLOCK) num = SCREE_WORK_BLOCK;
     SCREE_TURN_BY_TURN
     for (int64_t n = scree_team_lane(team); n < num; n += scree_team_size(team))
-        scree_work_add(&block, n, scree_work_of_contact(&a, begin + n));
+        scree_work_add_item(&block, n, scree_work_of_body(&a, a.places ? a.places[begin + n] : begin + n));
     const scree_work_sums sums = scree_work_total(team, &block);
     if (scree_team_leads(team)) a.sums[b] = sums;
 }

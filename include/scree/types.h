@@ -242,6 +242,7 @@ extern "C"
 
         // avoided work, all by default; the results are the same without
         bool reuse_pairs;         ///< candidate pairs serve until a body may have left its skin
+        bool reorder_particles;   ///< those that have mixed change places in memory, to be near their neighbours
         bool compare_spheres;     ///< candidates are those whose bounding spheres overlap, not only their boxes
         bool find_separation;     ///< meshes are asked for a plane between them before their overlap
         bool remember_separation; ///< that plane is tried first the next time

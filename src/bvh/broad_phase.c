@@ -1,9 +1,10 @@
 /// \file broad_phase.c
-/// Order of a search: tree over the boxes, pairs of particles, pairs with walls, sort by (i, j), rows.
+/// Order of a search: tree over the boxes, pairs of particles, pairs with walls, sort, rows.
 #include "bvh/broad_phase.h"
 
 #include "bvh/bvh_launch.h"
 #include "core/buffer.h"
+#include "core/scan.h"
 #include "core/sort.h"
 
 #include <stdlib.h>
@@ -18,9 +19,10 @@ struct scree_broad_phase_buffers
 {
     scree_scratch scratch;   ///< unless it is borrowed
     scree_sort_buffers sort; ///< keys of pairs
+    scree_scan_scratch scan; ///< of own pairs
     int64_t max_keys;
     int64_t *num_keys;   ///< counts the pairs of a search
-    int32_t *first_as_j; ///< (max_bodies + 1)
+    int32_t *first_as_j; ///< (max_bodies + 1); before, own pairs
     int64_t max_pairs;
     int64_t max_bodies;
     int64_t num_bodies; ///< of the last search
@@ -33,6 +35,7 @@ void scree_broad_phase_destroy(scree_broad_phase *broad_phase)
     if (broad_phase->buffers != NULL)
     {
         scree_scratch_destroy(&broad_phase->buffers->scratch);
+        scree_scan_destroy(&broad_phase->buffers->scan);
         scree_device_free(device, broad_phase->buffers->num_keys);
         scree_device_free(device, broad_phase->own_begin);
         scree_device_free(device, broad_phase->buffers->first_as_j);
@@ -54,7 +57,7 @@ static scree_status start(scree_broad_phase *broad_phase)
     if (b->num_keys == NULL) b->num_keys = scree_device_alloc(device, 1, sizeof *b->num_keys);
     if (b->num_keys == NULL) return SCREE_OUT_OF_MEMORY;
     scree_scratch *scratch = broad_phase->scratch != NULL ? broad_phase->scratch : &b->scratch;
-    b->scratch.device = broad_phase->tree.device = device;
+    b->scratch.device = b->scan.device = broad_phase->tree.device = device;
     broad_phase->tree.scratch = scratch;
     b->sort = (scree_sort_buffers){.device = device, .scratch = scratch};
     return scratch == &b->scratch ? scree_scratch_begin(scratch, 0) : SCREE_OK;
@@ -127,7 +130,7 @@ static int64_t find_keys(scree_broad_phase *broad_phase, const scree_broad_phase
     struct scree_broad_phase_buffers *b = broad_phase->buffers;
     scree_device *device = broad_phase->device;
     scree_device_zero(device, b->num_keys, sizeof *b->num_keys);
-    const scree_pair_list list = {b->sort.keys, b->num_keys, b->sort.max_items,
+    const scree_pair_list list = {b->sort.keys, b->num_keys, b->sort.max_items, input->ids,
                                   count_bits(input->num_particles + input->num_walls)};
     const scree_particle_pairs_args particle_args = {broad_phase->tree.view, list,
                                                      input->compares_spheres ? input->centres : NULL, input->radii};
@@ -142,20 +145,43 @@ static int64_t find_keys(scree_broad_phase *broad_phase, const scree_broad_phase
     return num_keys;
 }
 
+/// Sorted keys to pairs, and keys by second bodies.
+static void fill_pairs(struct scree_broad_phase_buffers *b, scree_device *device, scree_pair_rows_args args)
+{
+    if (args.num_pairs == 0)
+    {
+        scree_device_zero(device, args.first_as_i, (size_t)(args.num_bodies + 1) * sizeof *args.first_as_i);
+        scree_device_zero(device, args.first_as_j, (size_t)(args.num_bodies + 1) * sizeof *args.first_as_j);
+    }
+    scree_pair_unpack_launch_on(device, args, args.num_pairs);
+    if (args.ids != NULL)
+    {
+        scree_pair_own_launch_on(device, args, args.num_bodies);
+        scree_scan_on(&b->scan, args.own_before, args.num_bodies);
+    }
+    scree_pair_second_keys_launch_on(device, args, args.num_pairs);
+}
+
 /// Sorted keys to pairs and rows.
-static void fill_pairs_and_rows(scree_broad_phase *broad_phase, int64_t num_pairs, int64_t num_bodies)
+static void fill_pairs_and_rows(scree_broad_phase *broad_phase, const scree_broad_phase_input *input, int64_t num_pairs)
 {
     struct scree_broad_phase_buffers *b = broad_phase->buffers;
-    scree_pair_rows_args args = {b->sort.keys,  b->sort.spare_keys,     broad_phase->pairs,     broad_phase->own_begin,
-                                 b->first_as_j, broad_phase->row_begin, broad_phase->row_pairs, num_pairs,
-                                 num_bodies,    count_bits(num_bodies)};
     scree_device *device = broad_phase->device;
-    if (num_pairs == 0)
-    {
-        scree_device_zero(device, args.first_as_i, (size_t)(num_bodies + 1) * sizeof *args.first_as_i);
-        scree_device_zero(device, args.first_as_j, (size_t)(num_bodies + 1) * sizeof *args.first_as_j);
-    }
-    scree_pair_unpack_launch_on(device, args, num_pairs);
+    const int64_t num_bodies = input->num_particles + input->num_walls;
+    scree_pair_rows_args args = {.keys = b->sort.keys,
+                                 .second_keys = b->sort.spare_keys,
+                                 .pairs = broad_phase->pairs,
+                                 .first_as_i = broad_phase->own_begin,
+                                 .first_as_j = b->first_as_j,
+                                 .own_before = b->first_as_j,
+                                 .row_begin = broad_phase->row_begin,
+                                 .row_pairs = broad_phase->row_pairs,
+                                 .ids = input->ids,
+                                 .places = input->places,
+                                 .num_pairs = num_pairs,
+                                 .num_bodies = num_bodies,
+                                 .id_bits = count_bits(num_bodies)};
+    fill_pairs(b, device, args);
 
     // by second body; the pairs of one stay in order
     uint64_t *keys = b->sort.keys;
@@ -176,6 +202,7 @@ scree_status scree_broad_phase_find(scree_broad_phase *broad_phase, const scree_
     if (num_bodies >= INT32_MAX) return SCREE_TOO_MANY;
     scree_status status = start(broad_phase);
     if (status == SCREE_OK) status = reserve_bodies(broad_phase, num_bodies);
+    if (status == SCREE_OK && input->ids != NULL) status = scree_scan_reserve(&broad_phase->buffers->scan, num_bodies);
     if (status == SCREE_OK) status = scree_lbvh_build(&broad_phase->tree, input->boxes, input->num_particles);
 
     struct scree_broad_phase_buffers *b = broad_phase->buffers;
@@ -194,7 +221,7 @@ scree_status scree_broad_phase_find(scree_broad_phase *broad_phase, const scree_
     if (status == SCREE_OK) status = reserve_pairs(broad_phase, num_pairs);
     if (status != SCREE_OK) return status;
     scree_sort(&b->sort, num_pairs, 0);
-    fill_pairs_and_rows(broad_phase, num_pairs, num_bodies);
+    fill_pairs_and_rows(broad_phase, input, num_pairs);
     return SCREE_OK;
 }
 

@@ -5,7 +5,8 @@
 
 #include "bvh/lbvh.h"
 
-/// Two bodies that may touch; i < j. Particles have ids 0 .. num_particles - 1, wall w has id num_particles + w.
+/// Two bodies that may touch, by their places in the arrays over bodies: particles from 0 to num_particles - 1, then the
+/// walls. The id of i is the smaller one. A body's id is its place, unless a search is given other ids.
 typedef struct scree_candidate_pair
 {
     int32_t i, j;
@@ -29,6 +30,8 @@ typedef struct scree_broad_phase_input
     int64_t num_particles;
     int64_t num_walls;
     bool compares_spheres; ///< particles make a pair only if their bounding spheres overlap too
+    const int32_t *ids;    ///< (num_bodies) of the body in each place; walls keep theirs. NULL: places are ids
+    const int32_t *places; ///< (num_bodies) of the body of each id; NULL with ids
 } scree_broad_phase_input;
 
 /// Owns the particle tree, the pairs and all scratch. Start from {0}, or from {.device = ...} for a search on a GPU.
@@ -37,10 +40,10 @@ typedef struct scree_broad_phase
     scree_device *device;   ///< where all arrays lie, NULL: the CPU
     scree_scratch *scratch; ///< borrowed: the tree and keys are taken there, in the caller's stage; NULL: its own
     scree_lbvh tree;
-    scree_candidate_pair *pairs; ///< (num_pairs) sorted by (i, j), each once
+    scree_candidate_pair *pairs; ///< (num_pairs) sorted by the place of i, then the id of j, each once
     int64_t num_pairs;
     int64_t *row_begin;                        ///< (num_bodies + 1) start of each body's row in row_pairs
-    int32_t *row_pairs;                        ///< (2 num_pairs) for each body the indices of its pairs, ascending
+    int32_t *row_pairs;                        ///< (2 num_pairs) for each body its pairs, by the id of the other one
     int32_t *own_begin;                        ///< (num_bodies + 1) first pair in which a body is the first one
     struct scree_broad_phase_buffers *buffers; ///< internal
 } scree_broad_phase;
@@ -49,8 +52,8 @@ typedef struct scree_broad_phase
 /// wall) where a particle's sphere meets the box of one of the wall's triangles. Parallel, same pairs for any number of
 /// threads and on a GPU. What a GPU has found is complete when scree_device_status() says so.
 scree_status scree_broad_phase_find(scree_broad_phase *broad_phase, const scree_broad_phase_input *input);
-/// On the CPU: pairs sorted and unique, i < j, rows complete; compared with all pairs by brute force if num_particles
-/// <= 2000.
+/// On the CPU, if places are ids: pairs sorted and unique, i < j, rows complete; compared with all pairs by brute force
+/// if num_particles <= 2000.
 bool scree_broad_phase_validate(const scree_broad_phase *broad_phase, const scree_broad_phase_input *input,
                                 scree_report *report);
 void scree_broad_phase_destroy(scree_broad_phase *broad_phase);

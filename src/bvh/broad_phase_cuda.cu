@@ -8,6 +8,8 @@ static_assert(SCREE_PAIR_STRIDE == SCREE_CUDA_BLOCK, "a place in shared memory f
 SCREE_DEFINE_LAUNCH(scree_particle_pairs)
 SCREE_DEFINE_LAUNCH(scree_wall_pairs)
 SCREE_DEFINE_LAUNCH(scree_pair_unpack)
+SCREE_DEFINE_LAUNCH(scree_pair_own)
+SCREE_DEFINE_LAUNCH(scree_pair_second_keys)
 SCREE_DEFINE_LAUNCH(scree_pair_second_begin)
 SCREE_DEFINE_LAUNCH(scree_pair_row_begin)
 SCREE_DEFINE_LAUNCH(scree_pair_rows)

@@ -23,13 +23,14 @@
 #define SCREE_PAIR_KEYS(keys) uint64_t keys[SCREE_PAIR_BATCH]
 #endif
 
-/// Where found pairs go. Key of (i, j), i < j: i << id_bits | j.
+/// Where found pairs go. Key of (i, j): place of i << id_bits | id of j, where the id of i is the smaller one.
 typedef struct scree_pair_list
 {
     uint64_t *keys;    ///< (max_keys)
     int64_t *num_keys; ///< counts on beyond max_keys, so that the next try has room
     int64_t max_keys;
-    int32_t id_bits; ///< bits that hold every id, at most 31
+    const int32_t *ids; ///< (num_bodies) of the body in each place, or NULL: places are ids
+    int32_t id_bits;    ///< bits that hold every id, at most 31
 } scree_pair_list;
 
 /// Keys on their way to the list.
@@ -39,9 +40,11 @@ typedef struct scree_pair_batch
     int32_t num_keys;
 } scree_pair_batch;
 
+/// Of the bodies in places a and b.
 SCREE_FN uint64_t scree_pair_key(scree_pair_list list, int32_t a, int32_t b)
 {
-    return a < b ? (uint64_t)a << list.id_bits | (uint64_t)b : (uint64_t)b << list.id_bits | (uint64_t)a;
+    const int32_t id_a = list.ids ? list.ids[a] : a, id_b = list.ids ? list.ids[b] : b;
+    return id_a < id_b ? (uint64_t)a << list.id_bits | (uint64_t)id_b : (uint64_t)b << list.id_bits | (uint64_t)id_a;
 }
 
 /// Appends keys; those beyond the end of the list are only counted.
@@ -156,43 +159,63 @@ SCREE_FN void scree_wall_pairs_at(scree_wall_pairs_args a, int64_t block)
 }
 
 /// Sorted keys to pairs and rows. A body's row holds the pairs in which it is the second body, then those in which it
-/// is the first: the former have a smaller first body, so they come earlier in the list and the row ascends.
+/// is the first, both by the id of the other body; the others of the former have smaller ids than itself.
 typedef struct scree_pair_rows_args
 {
     const uint64_t *keys;        ///< (num_pairs) sorted
-    uint64_t *second_keys;       ///< (num_pairs) j << 32 | pair; sorted by j between the first and the second kernel
+    uint64_t *second_keys;       ///< (num_pairs) place of j << 32 | pair; first by the ids of i, then sorted by j
     scree_candidate_pair *pairs; ///< (num_pairs)
     int32_t *first_as_i;         ///< (num_bodies + 1) pairs before the first one with i >= body
     int32_t *first_as_j;         ///< (num_bodies + 1) second keys before the first one with j >= body
+    int32_t *own_before;         ///< (num_bodies + 1) own pairs of all bodies of smaller ids; only if there are ids
     int64_t *row_begin;          ///< (num_bodies + 1)
     int32_t *row_pairs;          ///< (2 num_pairs)
+    const int32_t *ids;          ///< (num_bodies) of the body in each place, or NULL: places are ids
+    const int32_t *places;       ///< (num_bodies) of the body of each id, or NULL
     int64_t num_pairs;
     int64_t num_bodies;
     int32_t id_bits;
 } scree_pair_rows_args;
 
 typedef scree_pair_rows_args scree_pair_unpack_args;
+typedef scree_pair_rows_args scree_pair_own_args;
+typedef scree_pair_rows_args scree_pair_second_keys_args;
 typedef scree_pair_rows_args scree_pair_second_begin_args;
 typedef scree_pair_rows_args scree_pair_row_begin_args;
 
-/// Entry p of a sorted list has body `id`, the entry before it `previous` (-1 for the first one): p is the beginning
-/// of all bodies above `previous` up to `id`. The last entry also begins what follows.
-SCREE_FN void scree_pair_mark_begins(scree_pair_rows_args a, int32_t *first, int64_t p, int64_t previous, int64_t id)
+/// Entry p of a sorted list has body `place`, the entry before it `previous` (-1 for the first one): p is the beginning
+/// of all bodies above `previous` up to `place`. The last entry also begins what follows.
+SCREE_FN void scree_pair_mark_begins(scree_pair_rows_args a, int32_t *first, int64_t p, int64_t previous, int64_t place)
 {
-    for (int64_t body = previous + 1; body <= id; ++body) first[body] = (int32_t)p;
+    for (int64_t body = previous + 1; body <= place; ++body) first[body] = (int32_t)p;
     if (p + 1 < a.num_pairs) return;
-    for (int64_t body = id + 1; body <= a.num_bodies; ++body) first[body] = (int32_t)a.num_pairs;
+    for (int64_t body = place + 1; body <= a.num_bodies; ++body) first[body] = (int32_t)a.num_pairs;
 }
 
 /// Pair p from its key.
 SCREE_FN void scree_pair_unpack_at(scree_pair_unpack_args a, int64_t p)
 {
     const uint64_t key = a.keys[p], mask = ((uint64_t)1 << a.id_bits) - 1;
+    const int32_t id = (int32_t)(key & mask);
     a.pairs[p].i = (int32_t)(key >> a.id_bits);
-    a.pairs[p].j = (int32_t)(key & mask);
-    a.second_keys[p] = (key & mask) << 32 | (uint64_t)p;
+    a.pairs[p].j = a.places ? a.places[id] : id;
     const int64_t previous = p > 0 ? (int64_t)(a.keys[p - 1] >> a.id_bits) : -1;
     scree_pair_mark_begins(a, a.first_as_i, p, previous, (int64_t)(key >> a.id_bits));
+}
+
+/// How many pairs the body of an id is the first one of; then these are added up.
+SCREE_FN void scree_pair_own_at(scree_pair_own_args a, int64_t id)
+{
+    const int32_t place = a.places[id];
+    a.own_before[id] = a.first_as_i[place + 1] - a.first_as_i[place];
+}
+
+/// Pair p to the second keys.
+SCREE_FN void scree_pair_second_keys_at(scree_pair_second_keys_args a, int64_t p)
+{
+    const scree_candidate_pair pair = a.pairs[p];
+    const int64_t k = a.ids ? a.own_before[a.ids[pair.i]] + (p - a.first_as_i[pair.i]) : p;
+    a.second_keys[k] = (uint64_t)pair.j << 32 | (uint64_t)p;
 }
 
 /// Where the bodies begin in the sorted second keys; entry q.

@@ -121,6 +121,8 @@ scree_status scree_lbvh_build(scree_lbvh *tree, const scree_box *boxes, int64_t 
     return SCREE_OK;
 }
 
+const int32_t *scree_lbvh_order(const scree_lbvh *tree) { return tree->buffers->sort.values; }
+
 void scree_lbvh_refit(scree_lbvh *tree, const scree_box *boxes)
 {
     if (tree->view.num_leaves == 0) return;

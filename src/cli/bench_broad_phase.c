@@ -88,7 +88,7 @@ static bool measure_once(scree_broad_phase *broad_phase, const scree_broad_phase
     if (scree_sort_reserve(keys, broad_phase->num_pairs, false) != SCREE_OK) return false;
     int64_t num_keys = 0;
     scree_particle_pairs_args args = {
-        broad_phase->tree.view, {keys->keys, &num_keys, keys->max_items, 31}, input->centres, input->radii};
+        broad_phase->tree.view, {keys->keys, &num_keys, keys->max_items, NULL, 31}, input->centres, input->radii};
     const double begin = scree_bench_core_seconds();
     if (scree_lbvh_build(&broad_phase->tree, input->boxes, input->num_particles) != SCREE_OK) return false;
     const double built = scree_bench_core_seconds();

@@ -1,6 +1,7 @@
 #include "contact/contact_list.h"
 
 #include "core/buffer.h"
+#include "core/permute.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -203,6 +204,14 @@ scree_status scree_contact_list_copy(scree_contact_list *to, const scree_contact
     return SCREE_OK;
 }
 
+void scree_contact_list_permute(scree_contact_list *list, const int32_t *order, void *scratch)
+{
+#define SCREE_PERMUTE(array, is_carried, is_used) \
+    if (is_used) scree_permute(list->device, list->array, sizeof *list->array, order, list->num_contacts, scratch);
+    SCREE_CONTACT_ARRAYS(SCREE_PERMUTE)
+#undef SCREE_PERMUTE
+}
+
 int64_t scree_contact_list_block_bytes(const scree_contact_list *list)
 {
     size_t num_bytes = 0;
@@ -235,28 +244,30 @@ void scree_contact_list_destroy(scree_contact_list *list)
     *list = empty;
 }
 
-/// Order of contacts a and b by (i, j, patch): negative, zero or positive.
-static int compare_contacts(const scree_contact_list *list, int64_t a, int64_t b)
+static int32_t id_of(const int32_t *ids, int32_t body) { return ids != NULL ? ids[body] : body; }
+
+/// Order of contacts a and b: negative, zero or positive.
+static int compare_contacts(const scree_contact_list *list, const int32_t *ids, int64_t a, int64_t b)
 {
     const scree_candidate_pair p = list->bodies[a], q = list->bodies[b];
     if (p.i != q.i) return p.i < q.i ? -1 : 1;
-    if (p.j != q.j) return p.j < q.j ? -1 : 1;
+    if (p.j != q.j) return id_of(ids, p.j) < id_of(ids, q.j) ? -1 : 1;
     return (list->patch[a] > list->patch[b]) - (list->patch[a] < list->patch[b]);
 }
 
-bool scree_contact_list_validate(const scree_contact_list *list, scree_report *report)
+bool scree_contact_list_validate(const scree_contact_list *list, const int32_t *ids, scree_report *report)
 {
     bool is_valid = true;
     for (int64_t c = 0; c < list->num_contacts && is_valid; ++c)
     {
         const scree_candidate_pair pair = list->bodies[c];
         const double length = (double)scree_vec3_length(list->normal[c]);
-        if (c > 0 && compare_contacts(list, c - 1, c) >= 0)
+        if (c > 0 && compare_contacts(list, ids, c - 1, c) >= 0)
         {
             scree_report_add(report, "contact %lld of bodies %d and %d is out of order", (long long)c, pair.i, pair.j);
             is_valid = false;
         }
-        if (!(pair.i >= 0 && pair.i < pair.j))
+        if (!(pair.i >= 0 && pair.j >= 0 && id_of(ids, pair.i) < id_of(ids, pair.j)))
         {
             scree_report_add(report, "contact %lld joins bodies %d and %d; the first id must be the smaller one",
                              (long long)c, pair.i, pair.j);

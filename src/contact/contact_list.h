@@ -12,8 +12,9 @@
 #define SCREE_PATCH_BITS 15
 
 /// Owns its arrays, all (num_contacts) unless stated. Start from {0}, or from {.device = ...} for a list on a GPU.
-/// i < j; j may be a wall (id num_particles + w). Vectors in world axes. What a scene has no use for stays zero, is
-/// not touched, takes no memory, and is NULL on a GPU; the arrays marked + and ++ are what is known of the step before.
+/// The id of i is smaller than that of j, which may be a wall. Vectors in world axes. What a scene has no use for stays
+/// zero, is not touched, takes no memory, and is NULL on a GPU; the arrays marked + and ++ are what is known of the step
+/// before.
 typedef struct scree_contact_list
 {
     int64_t num_contacts;
@@ -95,12 +96,15 @@ int64_t scree_contact_list_room(const scree_contact_list *list);
 void scree_contact_list_share_uses(scree_contact_list *to, const scree_contact_list *from);
 /// The contacts of one list to another, which may lie elsewhere; not which pairs they belong to. SCREE_OUT_OF_MEMORY.
 scree_status scree_contact_list_copy(scree_contact_list *to, const scree_contact_list *from);
+/// Contact order[c] to place c; `scratch` has room for a vector of each.
+void scree_contact_list_permute(scree_contact_list *list, const int32_t *order, void *scratch);
 /// Bytes of a contact in a list of these uses and in the history of the step before.
 int64_t scree_contact_list_bytes(const scree_contact_list *list);
 /// Those of them in the block.
 int64_t scree_contact_list_block_bytes(const scree_contact_list *list);
 void scree_contact_list_destroy(scree_contact_list *list);
-/// On the CPU: sorted by (i, j, patch), unique, normals unit, volumes positive. Faults go to the report.
-bool scree_contact_list_validate(const scree_contact_list *list, scree_report *report);
+/// On the CPU: sorted by the place of i, the id of j and patch, unique, normals unit, volumes positive. `ids` of the bodies,
+/// or NULL: each is its own. Faults go to the report.
+bool scree_contact_list_validate(const scree_contact_list *list, const int32_t *ids, scree_report *report);
 
 #endif

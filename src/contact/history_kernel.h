@@ -77,9 +77,9 @@ SCREE_FN void scree_history_match_at(scree_history_match_args a, int64_t p)
     if (a.first_of_pair[p] == a.first_of_pair[p + 1]) return;
     const scree_candidate_pair pair = a.pairs[p];
     const bool has_same_pairs = a.old_first_of_pair;
-    const int32_t begin = has_same_pairs ? a.old_first_of_pair[p] : scree_group_find(&a.old_groups, pair.i, pair.j);
-    const int32_t end =
-        has_same_pairs ? a.old_first_of_pair[p + 1] : scree_group_find(&a.old_groups, pair.i, pair.j + 1);
+    const int32_t id = has_same_pairs ? -1 : scree_group_id(&a.old_groups, pair.j);
+    const int32_t begin = has_same_pairs ? a.old_first_of_pair[p] : scree_group_find(&a.old_groups, pair.i, id);
+    const int32_t end = has_same_pairs ? a.old_first_of_pair[p + 1] : scree_group_find(&a.old_groups, pair.i, id + 1);
     scree_history_match_pair(a, p, begin, end);
 }
 

@@ -19,6 +19,7 @@ typedef struct scree_bodies
     const int32_t *shape;           ///< (num_bodies) index into shapes
     const scree_pose *pose;         ///< (num_bodies)
     const scree_real *travel;       ///< [m] (num_bodies) bound of the way of any of its points since the last search
+    const int32_t *ids;             ///< (num_bodies) of the bodies, or NULL: each is its own
     int64_t num_bodies;
     int64_t num_steps; ///< since the last search, in which the travels were made
     scree_real reach;  ///< [m] two bodies come closer by no more than this until pairs are forgotten; 0: not known

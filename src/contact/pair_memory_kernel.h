@@ -111,7 +111,7 @@ typedef struct scree_pair_carry_args
 SCREE_FN void scree_pair_carry_at(scree_pair_carry_args a, int64_t m)
 {
     const scree_candidate_pair pair = a.pairs[scree_pair_of_batch(a.batch, m)];
-    const int32_t old = scree_group_find(&a.kept, pair.i, pair.j);
+    const int32_t old = scree_group_find(&a.kept, pair.i, scree_group_id(&a.kept, pair.j));
     scree_pair_memory memory;
     memory.direction[0] = memory.direction[1] = 0;
     memory.apart_until = 0;

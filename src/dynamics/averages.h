@@ -76,6 +76,8 @@ typedef struct scree_averages
     int64_t max_places;
     scree_ended_collision *ended; ///< (max_ended)
     int64_t max_ended;
+    scree_ended_collision *ended_here; ///< (max_ended_here) the same on the CPU, if they lie on a GPU
+    int64_t max_ended_here;
 } scree_averages;
 
 /// Makes simulation->averages from the scene; particles and walls must be there, the time step known. Faults: a wall
@@ -102,6 +104,8 @@ void scree_spectrum_destroy(scree_spectrum *spectrum);
 scree_status scree_collisions_reserve(scree_collisions *collisions, int64_t num_contacts);
 /// The same numbers, where *to lies; one of the two is on the CPU.
 scree_status scree_collisions_copy(scree_collisions *to, const scree_collisions *from);
+/// That of contact order[c] to place c; `scratch` has room for a double of each.
+void scree_collisions_permute(scree_collisions *collisions, const int32_t *order, void *scratch);
 void scree_collisions_destroy(scree_collisions *collisions);
 
 /// Adds the particles as they are now to the sums.

@@ -3,15 +3,11 @@
 #include "dynamics/averages.h"
 
 #include "core/buffer.h"
+#include "core/permute.h"
 #include "dynamics/on_device.h"
 #include "dynamics/step_buffers.h"
 
 #include <stdlib.h>
-
-enum
-{
-    PIECE = 256 ///< ended collisions brought to the host at a time
-};
 
 scree_status scree_spectrum_create(scree_spectrum *spectrum, int64_t num_rows)
 {
@@ -90,6 +86,13 @@ scree_status scree_collisions_copy(scree_collisions *to, const scree_collisions 
     return SCREE_OK;
 }
 
+void scree_collisions_permute(scree_collisions *collisions, const int32_t *order, void *scratch)
+{
+    const int64_t num = collisions->num_contacts;
+    scree_permute(collisions->device, collisions->normal, sizeof *collisions->normal, order, num, scratch);
+    scree_permute(collisions->device, collisions->tangential, sizeof *collisions->tangential, order, num, scratch);
+}
+
 void scree_collisions_destroy(scree_collisions *collisions)
 {
     scree_device_free(collisions->device, collisions->normal);
@@ -103,6 +106,7 @@ void scree_destroy_collision_scratch(scree_averages *averages, scree_device *dev
     scree_scan_destroy(&averages->scan);
     scree_device_free(device, averages->ended_places);
     scree_device_free(device, averages->ended);
+    free(averages->ended_here);
 }
 
 /// Row of an energy: 0 below the first edge, num_bins + 1 from the last one on.
@@ -143,11 +147,23 @@ static scree_status make_room(scree_averages *averages, scree_device *device, in
     if (status == SCREE_OK)
         status = scree_device_reserve_only(device, &averages->ended, &averages->max_ended, max_contacts,
                                            sizeof *averages->ended);
+    if (status == SCREE_OK && device != NULL)
+        status = scree_device_reserve_only(NULL, &averages->ended_here, &averages->max_ended_here, max_contacts,
+                                           sizeof *averages->ended_here);
     return status;
 }
 
-/// The collisions that this step found ended are put together, in the order of the contacts, and come to the host piece
-/// by piece: there are few, and a step takes no memory. One thread counts them, in this order.
+/// Order by the ids of the bodies.
+static int compare_ended(const void *a, const void *b)
+{
+    const scree_ended_collision *x = a, *y = b;
+    if (x->first != y->first) return x->first < y->first ? -1 : 1;
+    if (x->second != y->second) return x->second < y->second ? -1 : 1;
+    return (x->patch > y->patch) - (x->patch < y->patch);
+}
+
+/// The collisions that this step found ended are put together and come to the host: there are few. One thread counts
+/// them, in the order of contacts between bodies that are home.
 static void count_ended(scree_simulation *simulation, scree_simulation *there)
 {
     scree_averages *scratch = &there->averages;
@@ -156,6 +172,8 @@ static void count_ended(scree_simulation *simulation, scree_simulation *there)
     scree_device *device = there->device;
     scree_ended_collisions_args args;
     args.bodies = there->old_contacts.bodies;
+    args.patch = there->old_contacts.patch;
+    args.ids = scree_ids(there);
     args.is_continued = there->buffers->is_continued;
     args.normal = old->normal;
     args.tangential = old->tangential;
@@ -169,13 +187,10 @@ static void count_ended(scree_simulation *simulation, scree_simulation *there)
     if (num == 0) return;
     args.ended = scratch->ended;
     scree_ended_collisions_launch_on(device, args, num_old);
-    scree_ended_collision piece[PIECE];
-    for (int64_t first = 0; first < num; first += PIECE)
-    {
-        const int64_t num_here = num - first < PIECE ? num - first : PIECE;
-        scree_device_read(device, piece, scratch->ended + first, (size_t)num_here * sizeof *piece);
-        for (int64_t k = 0; k < num_here; ++k) count(&simulation->averages, &simulation->averages.spectrum, piece + k);
-    }
+    scree_ended_collision *here = device != NULL ? scratch->ended_here : scratch->ended;
+    if (device != NULL) scree_device_read(device, here, scratch->ended, (size_t)num * sizeof *here);
+    if (args.ids != NULL) qsort(here, (size_t)num, sizeof *here, compare_ended);
+    for (int32_t k = 0; k < num; ++k) count(&simulation->averages, &simulation->averages.spectrum, here + k);
 }
 
 scree_status scree_update_collisions(scree_simulation *simulation)

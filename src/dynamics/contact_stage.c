@@ -45,6 +45,7 @@ scree_bodies scree_step_bodies(const scree_simulation *simulation)
     bodies.shape = b->shape;
     bodies.pose = b->pose;
     bodies.travel = b->travel;
+    bodies.ids = scree_ids(s);
     bodies.num_bodies = s->particles.num_particles + s->num_walls;
     bodies.num_steps = s->step - b->searched_step;
     // each particle stays within its skin, together with the walls
@@ -60,8 +61,8 @@ static scree_pair_groups find_old_groups(const scree_simulation *s)
     const int64_t num_bodies = s->particles.num_particles + s->num_walls;
     const bool has_old = old->num_contacts > 0;
     const scree_pair_groups groups = {
-        has_old ? &old->bodies->i : NULL, has_old ? &old->bodies->j : NULL, 2, old->num_contacts, b->old_groups,
-        b->old_groups + num_bodies};
+        has_old ? &old->bodies->i : NULL, has_old ? &old->bodies->j : NULL, scree_ids(s), 2, old->num_contacts,
+        b->old_groups, b->old_groups + num_bodies};
     if (b->is_old_list_of_same_pairs) return groups;
     scree_device_zero(s->device, b->old_groups, (size_t)num_bodies * 2 * sizeof *b->old_groups);
     scree_group_bounds_launch_on(s->device, groups, groups.num);
@@ -184,6 +185,7 @@ void scree_gather_forces(scree_simulation *simulation)
     gather.row_pairs = simulation->broad_phase.row_pairs;
     gather.pose = b->pose;
     gather.mass = simulation->particles.mass;
+    gather.are_ids = scree_ids(simulation) == NULL;
     gather.gravity = scree_vec3_make((scree_real)gravity[0], (scree_real)gravity[1], (scree_real)gravity[2]);
     gather.force = simulation->particles.force;
     gather.torque = simulation->particles.torque;
@@ -229,14 +231,15 @@ void scree_sum_work(scree_simulation *simulation)
     work.own_begin = simulation->broad_phase.own_begin;
     work.old = old_contacts_of(simulation);
     work.bodies = scree_step_body_motion(b);
-    work.ids = work.places = NULL;
+    work.ids = scree_ids(simulation);
+    work.places = scree_places_of_ids(simulation);
     work.inertia = simulation->particles.inertia;
     work.laws = simulation->laws;
     work.num_materials = simulation->num_materials;
     work.num_particles = (int32_t)simulation->particles.num_particles;
     work.time_step = (scree_real)simulation->time_step;
     work.sums = b->work_sums;
-    work.of_bodies = NULL;
+    work.of_bodies = b->places.scratch;
     const int64_t num_blocks = scree_count_blocks(work.num_particles, SCREE_WORK_BLOCK);
     scree_work_launch_on(simulation->device, work, num_blocks);
     scree_device_join(simulation->device);

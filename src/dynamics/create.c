@@ -379,8 +379,9 @@ scree_status scree_simulation_restored(scree_simulation *simulation, scree_repor
     scree_place_walls(simulation);
     scree_place_particles(simulation);
     simulation->buffers->has_pairs = false;
+    simulation->buffers->places.is_due = false;
     simulation->buffers->is_old_list_of_same_pairs = false;
-    return scree_contact_list_validate(&simulation->contacts, report) ? SCREE_OK : SCREE_INVALID_INPUT;
+    return scree_contact_list_validate(&simulation->contacts, NULL, report) ? SCREE_OK : SCREE_INVALID_INPUT;
 }
 
 void scree_simulation_destroy(scree_simulation *simulation)

@@ -151,6 +151,7 @@ typedef struct scree_correct_args
     scree_particles particles;
     scree_real time_step;
     scree_moving_body *moving; ///< (num_particles) out: velocities at the end of the step
+    const int32_t *ids;        ///< of the particles, or NULL: each is its own
     scree_step_tally *tally;   ///< learns of a particle whose position or momentum is not finite
 } scree_correct_args;
 
@@ -180,7 +181,9 @@ SCREE_FN void scree_correct_at(scree_correct_args a, int64_t i)
     a.moving[i].velocity = state.velocity;
     a.moving[i].angular_velocity = scree_angular_velocity(state.angular_momentum, load.inertia, state.orientation);
     const scree_real sum = scree_sum_of_state(&state);
-    if (!(sum - sum == 0)) scree_atomic_max(&a.tally->num_from_unstable, (scree_real)(a.particles.num_particles - i));
+    if (sum - sum == 0) return;
+    const int64_t id = a.ids ? a.ids[i] : i;
+    scree_atomic_max(&a.tally->num_from_unstable, (scree_real)(a.particles.num_particles - id));
 }
 
 #endif

@@ -93,6 +93,8 @@ scree_status scree_search_neighbours(scree_simulation *simulation)
     input.walls = b->broad_phase_walls;
     input.num_particles = num_particles;
     input.num_walls = simulation->num_walls;
+    input.ids = scree_ids(simulation);
+    input.places = scree_places_of_ids(simulation);
     const scree_bodies bodies = scree_step_bodies(simulation);
     if (!b->has_pairs || !simulation->scene->solver.reuse_pairs) scree_narrow_phase_forget(&simulation->narrow_phase);
     else scree_narrow_phase_carry(&simulation->narrow_phase, &bodies, simulation->broad_phase.pairs);
@@ -107,6 +109,7 @@ scree_status scree_search_neighbours(scree_simulation *simulation)
     b->is_old_list_of_same_pairs = false;
     ++simulation->counters.num_rebuilds;
     simulation->counters.num_pairs = simulation->broad_phase.num_pairs;
+    const scree_status compared = scree_compare_places(simulation);
     scree_stage_end(&simulation->clock, SCREE_STAGE_SEARCH);
-    return SCREE_OK;
+    return compared;
 }

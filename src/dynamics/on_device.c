@@ -138,6 +138,8 @@ static scree_status copy_buffers(scree_simulation *there, const scree_simulation
     b->has_travel = from->has_travel;
     b->skin = from->skin;
     b->mean_radius = from->mean_radius;
+    scree_places_start(there);
+    b->places.few = from->places.few;
     b->first_unstable = -1;
     bool is_complete = true;
 #define SCREE_COPY(array, num)                                   \
@@ -216,7 +218,8 @@ static scree_status take_memory(const scree_simulation *s, scree_device *device,
 scree_status scree_simulation_use_device(scree_simulation *simulation, scree_device *device, scree_report *report)
 {
     if (device == NULL || simulation->there != NULL) return SCREE_INVALID_INPUT;
-    scree_status status = take_memory(simulation, device, report);
+    scree_status status = scree_bring_home(simulation);
+    if (status == SCREE_OK) status = take_memory(simulation, device, report);
     if (status != SCREE_OK) return status;
     scree_simulation *there = calloc(1, sizeof *there);
     if (there == NULL) return SCREE_OUT_OF_MEMORY;
@@ -247,6 +250,7 @@ scree_status scree_simulation_use_device(scree_simulation *simulation, scree_dev
         return status;
     }
     // the step's own arrays are not needed here any more
+    scree_places_destroy(&simulation->buffers->places, NULL);
     scree_contact_list_destroy(&simulation->old_contacts);
     scree_broad_phase_destroy(&simulation->broad_phase);
     const scree_narrow_phase kept = simulation->narrow_phase;
@@ -270,10 +274,12 @@ void scree_take_from_device(scree_simulation *simulation)
 
 scree_status scree_simulation_observe(scree_simulation *simulation, scree_report *report)
 {
-    scree_simulation *there = simulation->there;
-    if (there == NULL || simulation->is_observed) return SCREE_OK;
+    scree_simulation *there = scree_simulation_there(simulation);
+    scree_status status = scree_bring_home(there);
+    if (status != SCREE_OK) scree_report_add(report, "there is no memory to look at the state of a step");
+    if (status != SCREE_OK || simulation->there == NULL || simulation->is_observed) return status;
     scree_particles_read(there->device, &simulation->particles, &there->particles);
-    scree_status status = scree_contact_list_copy(&simulation->contacts, &there->contacts);
+    status = scree_contact_list_copy(&simulation->contacts, &there->contacts);
     if (status == SCREE_OK && simulation->averages.num_bins > 0)
         status = scree_collisions_copy(&simulation->averages.collisions, &there->averages.collisions);
     const scree_status state_of_device = scree_device_status(there->device, report);

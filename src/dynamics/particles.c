@@ -1,5 +1,7 @@
 #include "dynamics/particles.h"
 
+#include "core/permute.h"
+
 #include <stdlib.h>
 
 #define SCREE_MOVING_ARRAYS(X) \
@@ -66,6 +68,14 @@ void scree_particles_read(scree_device *device, scree_particles *to, const scree
 #define SCREE_READ(array) scree_device_read(device, to->array, from->array, num * sizeof *to->array);
     SCREE_MOVING_ARRAYS(SCREE_READ)
 #undef SCREE_READ
+}
+
+void scree_particles_permute(scree_device *device, scree_particles *particles, const int32_t *order, void *scratch)
+{
+#define SCREE_MOVE(array) \
+    scree_permute(device, particles->array, sizeof *particles->array, order, particles->num_particles, scratch);
+    SCREE_PARTICLE_ARRAYS(SCREE_MOVE)
+#undef SCREE_MOVE
 }
 
 void scree_particles_free(scree_device *device, scree_particles *particles)

@@ -1,5 +1,5 @@
 /// \file particles.h
-/// State of all particles in SoA form; the index of a particle is its id.
+/// State of all particles in SoA form; the index of a particle is its id, or during steps its place, see places.h.
 #ifndef SCREE_PARTICLES_H
 #define SCREE_PARTICLES_H
 
@@ -35,6 +35,8 @@ void scree_particles_destroy(scree_particles *particles);
 scree_status scree_particles_copy(scree_device *device, scree_particles *to, const scree_particles *from);
 /// The moving arrays back from there.
 void scree_particles_read(scree_device *device, scree_particles *to, const scree_particles *from);
+/// Particle order[k] to place k; `scratch` has room for one of their arrays.
+void scree_particles_permute(scree_device *device, scree_particles *particles, const int32_t *order, void *scratch);
 void scree_particles_free(scree_device *device, scree_particles *particles);
 
 /// Spheres and cubes turn like this: about the angular momentum, whatever their orientation.

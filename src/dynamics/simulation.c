@@ -25,6 +25,7 @@ void scree_correct_motion(scree_simulation *simulation)
     args.particles = simulation->particles;
     args.time_step = (scree_real)simulation->time_step;
     args.moving = simulation->buffers->moving;
+    args.ids = scree_ids(simulation);
     args.tally = simulation->buffers->tally;
     scree_correct_launch_on(simulation->device, args, simulation->particles.num_particles);
 }
@@ -34,7 +35,7 @@ static scree_status check_contacts(const scree_simulation *s, scree_report *repo
 {
 #ifdef SCREE_CHECKED
     if (s->device != NULL) return SCREE_OK;
-    return scree_contact_list_validate(&s->contacts, report) ? SCREE_OK : SCREE_UNSTABLE;
+    return scree_contact_list_validate(&s->contacts, scree_ids(s), report) ? SCREE_OK : SCREE_UNSTABLE;
 #else
     (void)s;
     (void)report;
@@ -54,6 +55,7 @@ static scree_status advance_from(scree_simulation *s, scree_halt halt, scree_rep
         is_search_due = scree_is_search_due(s);
         scree_stage_end(&s->clock, SCREE_STAGE_TRAVEL);
     }
+    if (is_search_due) scree_change_places(s);
     scree_status status = is_search_due ? scree_search_neighbours(s) : SCREE_OK;
     if (status == SCREE_OK) status = scree_update_contacts(s);
     if (status == SCREE_OK) status = check_contacts(s, report);

@@ -89,6 +89,7 @@ scree_status scree_step_buffers_create(scree_simulation *simulation)
         b->moving[num_particles + w].material = simulation->walls[w].material;
         b->wall_input[w].tree = simulation->shape_views[b->shape[num_particles + w]].tree;
     }
+    scree_places_start(simulation);
     return SCREE_OK;
 }
 
@@ -102,6 +103,7 @@ void scree_step_buffers_destroy(scree_simulation *simulation)
                             b->load_sums,   b->old_groups,  b->old_of_contact, b->is_continued,      b->sides,
                             b->wall_motion, b->board};
     for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; ++k) scree_device_free(device, arrays[k]);
+    scree_places_destroy(&b->places, device);
     scree_forget_recordings(b);
     scree_device_free_host(device, b->board_here);
     scree_device_free_host(device, b->wall_motion_here);

@@ -4,6 +4,7 @@
 #define SCREE_STEP_BUFFERS_H
 
 #include "dynamics/body_kernel.h"
+#include "dynamics/places.h"
 #include "dynamics/state.h"
 #include "dynamics/step_tally.h"
 #include "forces/forces.h"
@@ -31,6 +32,8 @@ typedef struct scree_step_buffers
     int64_t searched_step;                     ///< step of the last search
     bool has_pairs;                            ///< false: search before the next step, and nothing is known of pairs
     bool is_search_asked;                      ///< search before the next step, though the skin may be wide enough
+
+    scree_places places;
 
     // walls
     scree_wall_motion *wall_motion;      ///< (num_walls)

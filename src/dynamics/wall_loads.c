@@ -81,7 +81,7 @@ void scree_sum_wall_loads(scree_simulation *simulation)
     args.pairs = s->broad_phase.pairs;
     args.row_begin = s->broad_phase.row_begin;
     args.row_pairs = s->broad_phase.row_pairs;
-    args.ids = NULL;
+    args.ids = scree_ids(s);
     args.pose = b->pose;
     args.axes = b->wall_axes;
     args.num_moving = num_moving;

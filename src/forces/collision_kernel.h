@@ -37,12 +37,16 @@ SCREE_FN void scree_collision_at(scree_collision_args a, int64_t c)
 typedef struct scree_ended_collision
 {
     double normal, tangential; ///< [J]
+    int32_t first, second;     ///< ids of the bodies
+    int32_t patch;
     int32_t is_with_wall;
 } scree_ended_collision;
 
 typedef struct scree_ended_collisions_args
 {
     const scree_candidate_pair *bodies; ///< (num_old)
+    const int32_t *patch;               ///< (num_old)
+    const int32_t *ids;                 ///< (num_bodies) of the bodies, or NULL: each is its own
     const uint8_t *is_continued;        ///< (num_old)
     const double *normal;               ///< [J] (num_old)
     const double *tangential;           ///< [J] (num_old)
@@ -58,10 +62,14 @@ SCREE_FN void scree_ended_flag_at(scree_ended_flag_args a, int64_t o) { a.places
 SCREE_FN void scree_ended_collisions_at(scree_ended_collisions_args a, int64_t o)
 {
     if (a.places[o + 1] == a.places[o]) return;
+    const scree_candidate_pair pair = a.bodies[o];
     scree_ended_collision collision;
     collision.normal = a.normal[o];
     collision.tangential = a.tangential[o];
-    collision.is_with_wall = a.bodies[o].j >= a.num_particles ? 1 : 0;
+    collision.first = a.ids ? a.ids[pair.i] : pair.i;
+    collision.second = a.ids ? a.ids[pair.j] : pair.j;
+    collision.patch = a.patch[o];
+    collision.is_with_wall = pair.j >= a.num_particles ? 1 : 0;
     a.ended[a.places[o]] = collision;
 }
 

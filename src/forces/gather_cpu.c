@@ -1,6 +1,6 @@
 /// \file gather_cpu.c
-/// Forces on particles on the CPU: the sums of gather_kernel.h without its rows. The contacts are sorted by (i, j), so
-/// whoever takes one after the other and adds its force to both bodies adds to each in the order of its row. What a
+/// Forces on particles on the CPU: the sums of gather_kernel.h without its rows. While places are ids the contacts are
+/// sorted by (i, j), so whoever takes one after the other and adds its force to both bodies adds to each in the order of its row. What a
 /// contact adds is computed in groups of lanes (lanes.h).
 ///
 /// A thread has a range of particles and takes the contacts whose first body is one of them. The contacts of a particle
@@ -119,8 +119,154 @@ static void gather_range(const scree_gather_args *a, int64_t first, int64_t end)
     }
 }
 
+// ---- bodies that are not home
+
+enum
+{
+    BLOCK_PARTICLES = 64,
+    MAX_SECOND = 256 ///< contacts that are worked on at a time
+};
+
+/// Contacts of some particles in which they are the second bodies, in the order of their rows.
+typedef struct scree_gather_list
+{
+    int32_t contact[MAX_SECOND], body[MAX_SECOND];
+    int32_t num;
+} scree_gather_list;
+
+/// A group of contacts, and what they add to one of their bodies each.
+typedef struct scree_side_group
+{
+    int32_t first[SCREE_LANES];
+    scree_lanes_vec3 position_i, position_j, arm, normal_force, tangential_force;
+    scree_lanes_vec3 moment; ///< zero where all contacts act in points
+    scree_lanes_vec3 force, torque;
+    scree_real unused[SCREE_LANES];
+} scree_side_group;
+
+/// On the second bodies of contacts in any places.
+SCREE_LANES_FUNCTION static void second_sides(scree_side_group *restrict g, const scree_gather_args *restrict a,
+                                              const int32_t *contact, const int32_t *body)
+{
+    const scree_contact_list *list = &a->contacts;
+    const int64_t size = sizeof(scree_vec3);
+    for (int l = 0; l < SCREE_LANES; ++l) g->first[l] = list->bodies[contact[l]].i;
+    scree_lanes_gather(&g->position_i, g->unused, a->pose, sizeof *a->pose, g->first);
+    scree_lanes_gather(&g->position_j, g->unused, a->pose, sizeof *a->pose, body);
+    scree_lanes_gather(&g->arm, g->unused, list->arm, size, contact);
+    scree_lanes_gather(&g->normal_force, g->unused, list->normal_force, size, contact);
+    scree_lanes_gather(&g->tangential_force, g->unused, list->tangential_force, size, contact);
+    if (!list->acts_in_points) scree_lanes_gather(&g->moment, g->unused, list->moment, size, contact);
+    for (int l = 0; l < SCREE_LANES; ++l)
+    {
+        const scree_vec3 point = scree_vec3_add(scree_lanes_get(&g->position_i, l), scree_lanes_get(&g->arm, l));
+        const scree_vec3 arm_j = scree_vec3_sub(point, scree_lanes_get(&g->position_j, l));
+        const scree_vec3 on_first =
+            scree_vec3_add(scree_lanes_get(&g->normal_force, l), scree_lanes_get(&g->tangential_force, l));
+        const scree_vec3 force = scree_vec3_negate(on_first), moment = scree_lanes_get(&g->moment, l);
+        scree_lanes_set(&g->force, l, force);
+        scree_lanes_set(&g->torque, l, scree_vec3_sub(scree_vec3_cross(arm_j, force), moment));
+    }
+}
+
+/// On the first bodies of contacts that follow each other.
+SCREE_LANES_FUNCTION static void first_sides(scree_side_group *restrict g, const scree_gather_args *restrict a,
+                                             int64_t first)
+{
+    const scree_contact_list *list = &a->contacts;
+    scree_lanes_load(&g->arm, list->arm + first);
+    scree_lanes_load(&g->normal_force, list->normal_force + first);
+    scree_lanes_load(&g->tangential_force, list->tangential_force + first);
+    if (!list->acts_in_points) scree_lanes_load(&g->moment, list->moment + first);
+    for (int l = 0; l < SCREE_LANES; ++l)
+    {
+        const scree_vec3 force =
+            scree_vec3_add(scree_lanes_get(&g->normal_force, l), scree_lanes_get(&g->tangential_force, l));
+        const scree_vec3 arm = scree_lanes_get(&g->arm, l), moment = scree_lanes_get(&g->moment, l);
+        scree_lanes_set(&g->force, l, force);
+        scree_lanes_set(&g->torque, l, scree_vec3_add(scree_vec3_cross(arm, force), moment));
+    }
+}
+
+static void add_second(const scree_gather_args *a, scree_gather_list *list)
+{
+    scree_side_group g = {0};
+    int32_t n = 0;
+    for (; n + SCREE_LANES <= list->num; n += SCREE_LANES)
+    {
+        second_sides(&g, a, list->contact + n, list->body + n);
+        for (int l = 0; l < SCREE_LANES; ++l)
+            add_to(a, list->body[n + l], scree_lanes_get(&g.force, l), scree_lanes_get(&g.torque, l));
+    }
+    for (; n < list->num; ++n)
+    {
+        const int32_t j = list->body[n];
+        scree_gather_contact(a, list->contact[n], j, a->force + j, a->torque + j);
+    }
+    list->num = 0;
+}
+
+static void add_first(const scree_gather_args *a, int64_t begin, int64_t end)
+{
+    scree_side_group g = {0};
+    int64_t c = begin;
+    for (; c + SCREE_LANES <= end; c += SCREE_LANES)
+    {
+        first_sides(&g, a, c);
+        for (int l = 0; l < SCREE_LANES; ++l)
+            add_to(a, a->contacts.bodies[c + l].i, scree_lanes_get(&g.force, l), scree_lanes_get(&g.torque, l));
+    }
+    for (; c < end; ++c)
+    {
+        const int32_t i = a->contacts.bodies[c].i;
+        scree_gather_contact(a, c, i, a->force + i, a->torque + i);
+    }
+}
+
+/// Particles begin .. end - 1 along their rows: first those in which they are the second bodies, then the others, which
+/// follow each other.
+static void gather_block(const scree_gather_args *a, int64_t begin, int64_t end)
+{
+    scree_gather_list list = {.num = 0};
+    const int32_t *first_of_pair = a->contacts.first_of_pair;
+    for (int64_t i = begin; i < end; ++i)
+    {
+        a->force[i] = scree_vec3_scale(a->gravity, a->mass[i]);
+        a->torque[i] = scree_vec3_zero();
+        const int64_t end_second = a->row_begin[i + 1] - (a->own_begin[i + 1] - a->own_begin[i]);
+        for (int64_t k = a->row_begin[i]; k < end_second; ++k)
+        {
+            // no branch on whether there is one: it cannot be foreseen
+            const int32_t first = first_of_pair[a->row_pairs[k]], num = first_of_pair[a->row_pairs[k] + 1] - first;
+            if (list.num == MAX_SECOND) add_second(a, &list);
+            list.contact[list.num] = first;
+            list.body[list.num] = (int32_t)i;
+            list.num += num > 0;
+            for (int32_t c = 1; c < num; ++c)
+            {
+                if (list.num == MAX_SECOND) add_second(a, &list);
+                list.contact[list.num] = first + c;
+                list.body[list.num++] = (int32_t)i;
+            }
+        }
+    }
+    add_second(a, &list);
+    add_first(a, first_of_pair[a->own_begin[begin]], first_of_pair[a->own_begin[end]]);
+}
+
 void scree_gather_launch(scree_gather_args args, int64_t num)
 {
+    if (!args.are_ids)
+    {
+        const int64_t num_blocks = (num + BLOCK_PARTICLES - 1) / BLOCK_PARTICLES;
+#pragma omp parallel for schedule(static) if (num >= SCREE_LAUNCH_MIN)
+        for (int64_t b = 0; b < num_blocks; ++b)
+        {
+            const int64_t begin = b * BLOCK_PARTICLES, end = begin + BLOCK_PARTICLES;
+            gather_block(&args, begin, end < num ? end : num);
+        }
+        return;
+    }
     const int64_t num_ranges = num < SCREE_LAUNCH_MIN ? 1 : omp_get_max_threads();
 #pragma omp parallel for schedule(static, 1) if (num_ranges > 1)
     for (int64_t r = 0; r < num_ranges; ++r) gather_range(&args, num * r / num_ranges, num * (r + 1) / num_ranges);

@@ -15,6 +15,7 @@ typedef struct scree_gather_args
     const int32_t *own_begin; ///< (num_bodies + 1) first pair in which a body is the first one; for sides
     const int64_t *row_begin; ///< (num_bodies + 1) rows of candidate pairs
     const int32_t *row_pairs; ///< (2 num_pairs)
+    bool are_ids; ///< are the contacts sorted by (i, j), because places are ids? Then the CPU needs no rows either
     const scree_pose *pose;   ///< (num_bodies)
     const scree_real *mass;   ///< [kg] (num_particles)
     scree_vec3 gravity;       ///< [m/s^2]

@@ -186,46 +186,67 @@ static int64_t end_of_block(const scree_work_args *a, int64_t b)
     return end < a->num_particles ? end : a->num_particles;
 }
 
-/// Sums of the bodies of a block of places to where their ids are; that the smallest step may be of any of them.
-static void scatter_block(const scree_work_args *a, int64_t b)
+/// What is kept of a body until its id comes.
+enum
+{
+    DAMPING,
+    FRICTION,
+    HYSTERESIS,
+    INPUT,
+    NUM_KEPT
+};
+
+/// Sums of each body of block b of places. Returns the smallest step.
+static scree_real keep_block(const scree_work_args *a, int64_t b)
 {
     scree_work_range r;
     sum_range(a, &r, b * SCREE_WORK_BLOCK, end_of_block(a, b));
     for (int64_t i = r.begin; i < r.end; ++i)
     {
-        const int64_t k = i - r.begin;
-        const scree_work_sums of_body = {.damping = r.damping[k],
-                                         .friction = r.friction[k],
-                                         .hysteresis = r.hysteresis[k],
-                                         .input = r.input[k],
-                                         .smallest_step_squared = r.smallest_step_squared};
-        a->of_bodies[a->ids[i]] = of_body;
+        scree_real *kept = a->of_bodies + i * NUM_KEPT;
+        kept[DAMPING] = r.damping[i - r.begin];
+        kept[FRICTION] = r.friction[i - r.begin];
+        kept[HYSTERESIS] = r.hysteresis[i - r.begin];
+        kept[INPUT] = r.input[i - r.begin];
     }
+    return r.smallest_step_squared;
+}
+
+/// Block b of ids from what was kept.
+static scree_work_sums total_of_ids(const scree_work_args *a, int64_t b)
+{
+    scree_work_range r;
+    r.begin = b * SCREE_WORK_BLOCK;
+    r.end = end_of_block(a, b);
+    r.smallest_step_squared = SCREE_REAL_MAX;
+    for (int64_t id = r.begin; id < r.end; ++id)
+    {
+        const scree_real *kept = a->of_bodies + (int64_t)a->places[id] * NUM_KEPT;
+        r.damping[id - r.begin] = kept[DAMPING];
+        r.friction[id - r.begin] = kept[FRICTION];
+        r.hysteresis[id - r.begin] = kept[HYSTERESIS];
+        r.input[id - r.begin] = kept[INPUT];
+    }
+    return total_of_range(&r);
 }
 
 void scree_work_launch(scree_work_args args, int64_t num)
 {
-#pragma omp parallel if (num > 1)
+    if (args.ids == NULL)
     {
-        if (args.ids != NULL)
-        {
-#pragma omp for schedule(static)
-            for (int64_t b = 0; b < num; ++b) scatter_block(&args, b);
-        }
-#pragma omp for schedule(static)
+#pragma omp parallel for schedule(static) if (num > 1)
         for (int64_t b = 0; b < num; ++b)
         {
             scree_work_range r;
-            if (args.ids == NULL)
-            {
-                sum_range(&args, &r, b * SCREE_WORK_BLOCK, end_of_block(&args, b));
-                args.sums[b] = total_of_range(&r);
-            }
-            else
-            {
-                const scree_work_reduce_args reduce = {args.of_bodies, args.num_particles, args.sums};
-                scree_work_reduce_at(reduce, b);
-            }
+            sum_range(&args, &r, b * SCREE_WORK_BLOCK, end_of_block(&args, b));
+            args.sums[b] = total_of_range(&r);
         }
+        return;
     }
+    scree_real smallest = SCREE_REAL_MAX;
+#pragma omp parallel for schedule(static) reduction(min : smallest) if (num > 1)
+    for (int64_t b = 0; b < num; ++b) smallest = scree_min(smallest, keep_block(&args, b));
+#pragma omp parallel for schedule(static) if (num > 1)
+    for (int64_t b = 0; b < num; ++b) args.sums[b] = total_of_ids(&args, b);
+    if (num > 0) args.sums->smallest_step_squared = smallest;
 }

@@ -52,7 +52,7 @@ typedef struct scree_work_args
     int32_t num_particles;
     scree_real time_step;
     scree_work_sums *sums; ///< (num_blocks) out
-    scree_work_sums *of_bodies; ///< (num_particles) by id, scratch of the CPU if there are ids
+    scree_real *of_bodies; ///< (num_particles, 4) scratch of the CPU if there are ids
 } scree_work_args;
 
 /// What body b adds to 1/m_eff at `arm` along n: 1/m + (r x n)^T I^-1 (r x n).

@@ -372,7 +372,7 @@ static bool check_values(const scree_simulation *simulation, const loaded_state 
             scree_report_add(report, "%s: contact %lld is of bodies that do not exist", path, (long long)c);
             return false;
         }
-    return state->row.step >= 0 && scree_contact_list_validate(contacts, report);
+    return state->row.step >= 0 && scree_contact_list_validate(contacts, NULL, report);
 }
 
 /// Takes the loaded arrays; the old ones are left in `state`.
@@ -430,8 +430,11 @@ scree_status scree_checkpoint_load(scree_simulation *simulation, const char *pat
         scree_report_add(report, "there is no checkpoint %s", path);
         return SCREE_NOT_FOUND;
     }
+    // what is read comes to the places of ids
+    scree_status status = scree_simulation_observe(simulation, report);
+    if (status != SCREE_OK) return status;
     const scree_hdf5_printing printing = scree_hdf5_silence();
-    scree_status status = SCREE_READ_FAILED;
+    status = SCREE_READ_FAILED;
     const hid_t file = scree_hdf5_open(path, false, report);
     if (file >= 0)
     {

@@ -380,6 +380,7 @@ static const cyaml_schema_field_t solver_fields[] = {NUMBER(scree_solver_def, sk
                                                      TEXT(scree_solver_def, overlap_scheme),
                                                      TRUTH(scree_solver_def, separate_patches),
                                                      TRUTH(scree_solver_def, reuse_pairs),
+                                                     TRUTH(scree_solver_def, reorder_particles),
                                                      TRUTH(scree_solver_def, compare_spheres),
                                                      TRUTH(scree_solver_def, find_separation),
                                                      TRUTH(scree_solver_def, remember_separation),
@@ -411,6 +412,10 @@ static const scree_scene_key solver_keys[] = {
      .meaning =
          "whether candidate pairs serve until a body may have left its skin; this and what follows saves work and "
          "changes no result"},
+    {.name = "reorder_particles",
+     .default_text = "true",
+     .meaning = "whether particles that have mixed change places in memory, to lie near their neighbours along a Morton "
+                "curve; ids and order of what is written stay"},
     {.name = "compare_spheres",
      .default_text = "true",
      .meaning = "whether particles are candidates only if their bounding spheres overlap, and not only their boxes"},

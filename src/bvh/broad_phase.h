@@ -5,8 +5,8 @@
 
 #include "bvh/lbvh.h"
 
-/// Two bodies that may touch, by their places in the arrays over bodies: particles from 0 to num_particles - 1, then the
-/// walls. The id of i is the smaller one. A body's id is its place, unless a search is given other ids.
+/// Two bodies that may touch, by their places in the arrays over bodies: particles from 0 to num_particles - 1, then
+/// the walls. The id of i is the smaller one. A body's id is its place, unless a search is given other ids.
 typedef struct scree_candidate_pair
 {
     int32_t i, j;

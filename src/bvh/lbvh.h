@@ -18,7 +18,8 @@ typedef struct scree_lbvh
 /// Builds the tree over `boxes` (num_boxes); parallel; same tree for any number of threads and on a GPU.
 /// Leaves carry the index of their box. Equal Morton codes are split by index. SCREE_OUT_OF_MEMORY, SCREE_TOO_MANY.
 scree_status scree_lbvh_build(scree_lbvh *tree, const scree_box *boxes, int64_t num_boxes);
-/// The boxes in the order of the leaves, that of a Morton curve (num_leaves), where the tree lies; until the next build.
+/// The boxes in the order of the leaves, that of a Morton curve (num_leaves), where the tree lies; until the next
+/// build.
 const int32_t *scree_lbvh_order(const scree_lbvh *tree);
 /// New boxes, same hierarchy.
 void scree_lbvh_refit(scree_lbvh *tree, const scree_box *boxes);

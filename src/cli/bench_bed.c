@@ -160,7 +160,8 @@ static scree_status find_contacts(tile *t)
                                            .num_particles = t->num_all,
                                            .compares_spheres = true};
     scree_status status = scree_broad_phase_find(&t->broad_phase, &input);
-    const scree_bodies bodies = {.shapes = t->shape, .shape = t->shape_index, .pose = t->pose, .travel = t->travel, .num_bodies = t->num_all};
+    const scree_bodies bodies = {
+        .shapes = t->shape, .shape = t->shape_index, .pose = t->pose, .travel = t->travel, .num_bodies = t->num_all};
     scree_narrow_phase_forget(&t->narrow_phase);
     if (status == SCREE_OK)
         status = scree_narrow_phase_find(&t->narrow_phase, &bodies, t->broad_phase.pairs, t->broad_phase.num_pairs,

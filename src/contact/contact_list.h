@@ -103,8 +103,8 @@ int64_t scree_contact_list_bytes(const scree_contact_list *list);
 /// Those of them in the block.
 int64_t scree_contact_list_block_bytes(const scree_contact_list *list);
 void scree_contact_list_destroy(scree_contact_list *list);
-/// On the CPU: sorted by the place of i, the id of j and patch, unique, normals unit, volumes positive. `ids` of the bodies,
-/// or NULL: each is its own. Faults go to the report.
+/// On the CPU: sorted by the place of i, the id of j and patch, unique, normals unit, volumes positive. `ids` of the
+/// bodies, or NULL: each is its own. Faults go to the report.
 bool scree_contact_list_validate(const scree_contact_list *list, const int32_t *ids, scree_report *report);
 
 #endif

@@ -18,9 +18,9 @@ typedef enum scree_halt
 /// Integers of one size, so that there are no gaps in it.
 typedef struct scree_live
 {
-    int64_t halt;             ///< a scree_halt; once it is not SCREE_HALT_NONE all launches return at once
-    int64_t num_steps;        ///< since the last search
-    int64_t num_contacts;     ///< of this step, once they are counted
+    int64_t halt;         ///< a scree_halt; once it is not SCREE_HALT_NONE all launches return at once
+    int64_t num_steps;    ///< since the last search
+    int64_t num_contacts; ///< of this step, once they are counted
 } scree_live;
 
 #endif

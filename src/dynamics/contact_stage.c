@@ -60,9 +60,13 @@ static scree_pair_groups find_old_groups(const scree_simulation *s)
     const scree_contact_list *old = &s->old_contacts;
     const int64_t num_bodies = s->particles.num_particles + s->num_walls;
     const bool has_old = old->num_contacts > 0;
-    const scree_pair_groups groups = {
-        has_old ? &old->bodies->i : NULL, has_old ? &old->bodies->j : NULL, scree_ids(s), 2, old->num_contacts,
-        b->old_groups, b->old_groups + num_bodies};
+    const scree_pair_groups groups = {has_old ? &old->bodies->i : NULL,
+                                      has_old ? &old->bodies->j : NULL,
+                                      scree_ids(s),
+                                      2,
+                                      old->num_contacts,
+                                      b->old_groups,
+                                      b->old_groups + num_bodies};
     if (b->is_old_list_of_same_pairs) return groups;
     scree_device_zero(s->device, b->old_groups, (size_t)num_bodies * 2 * sizeof *b->old_groups);
     scree_group_bounds_launch_on(s->device, groups, groups.num);

@@ -17,10 +17,10 @@ SCREE_DECLARE_LAUNCH(scree_skin)        ///< over one index
 SCREE_DECLARE_LAUNCH(scree_place_walls) ///< over walls
 SCREE_DECLARE_LAUNCH(scree_place_particles)
 SCREE_DECLARE_LAUNCH(scree_far_followers) ///< over blocks of SCREE_FAR_BLOCK particles
-SCREE_DECLARE_LAUNCH(scree_home_order)   ///< over bodies
-SCREE_DECLARE_LAUNCH(scree_new_places)   ///< over bodies
-SCREE_DECLARE_LAUNCH(scree_move_pairs)   ///< over pairs
-SCREE_DECLARE_LAUNCH(scree_group_sizes)  ///< over bodies
-SCREE_DECLARE_LAUNCH(scree_sort_groups)  ///< over bodies
+SCREE_DECLARE_LAUNCH(scree_home_order)    ///< over bodies
+SCREE_DECLARE_LAUNCH(scree_new_places)    ///< over bodies
+SCREE_DECLARE_LAUNCH(scree_move_pairs)    ///< over pairs
+SCREE_DECLARE_LAUNCH(scree_group_sizes)   ///< over bodies
+SCREE_DECLARE_LAUNCH(scree_sort_groups)   ///< over bodies
 
 #endif

@@ -2,8 +2,6 @@
 
 #include "contact/history.h"
 #include "core/permute.h"
-#include <stdio.h>
-#include <stdlib.h>
 #include "core/scan.h"
 #include "dynamics/dynamics.h"
 #include "dynamics/step_buffers.h"
@@ -74,6 +72,18 @@ static scree_status allocate(const scree_simulation *s)
     return SCREE_OK;
 }
 
+scree_status scree_ask_for_places(scree_simulation *simulation, const int32_t *order)
+{
+    scree_places *p = &simulation->buffers->places;
+    const scree_status status = allocate(simulation);
+    if (status != SCREE_OK) return status;
+    // walls keep theirs
+    const size_t num = (size_t)simulation->particles.num_particles;
+    scree_device_copy(simulation->device, p->order, order, num * sizeof *p->order);
+    p->is_due = simulation->buffers->is_search_asked = true;
+    return SCREE_OK;
+}
+
 scree_status scree_compare_places(scree_simulation *simulation)
 {
     scree_step_buffers *b = simulation->buffers;
@@ -88,14 +98,8 @@ scree_status scree_compare_places(scree_simulation *simulation)
     scree_far_followers_launch_on(device, args, (num + SCREE_FAR_BLOCK - 1) / SCREE_FAR_BLOCK);
     int64_t num_far = 0;
     scree_device_read(device, &num_far, p->num_far, sizeof num_far);
-    if (getenv("DBG")) fprintf(stderr, "far %g\n", (double)num_far / (double)num);
-    if (num_far * FAR_SHARE <= num) return SCREE_OK;
-    const scree_status status = allocate(simulation);
-    if (status != SCREE_OK) return status;
-    // walls keep theirs
-    scree_device_copy(device, p->order, scree_lbvh_order(&simulation->broad_phase.tree), (size_t)num * sizeof *p->order);
-    p->is_due = b->is_search_asked = true;
-    return SCREE_OK;
+    const bool are_mixed = num_far * FAR_SHARE > num;
+    return are_mixed ? scree_ask_for_places(simulation, scree_lbvh_order(&simulation->broad_phase.tree)) : SCREE_OK;
 }
 
 /// The body in place order[k] to place k, for all places; pairs and contacts follow.
@@ -148,8 +152,8 @@ static scree_status sort_contacts(scree_simulation *s)
     if (status == SCREE_OK) status = scree_scan_reserve(&scan, num_bodies);
     if (status == SCREE_OK)
     {
-        const scree_pair_groups groups = {
-            &list->bodies->i, &list->bodies->j, NULL, 2, num, b->old_groups, b->old_groups + num_bodies};
+        const scree_pair_groups groups = {&list->bodies->i, &list->bodies->j,          NULL, 2, num,
+                                          b->old_groups,    b->old_groups + num_bodies};
         scree_device_zero(device, b->old_groups, (size_t)num_bodies * 2 * sizeof *b->old_groups);
         scree_group_bounds_launch_on(device, groups, num);
         // what is known of places is not needed any more

@@ -1,9 +1,9 @@
 /// \file places.h
-/// Where particles lie in the arrays over bodies. They start in the order of their ids. Once they have mixed, what follows
-/// in memory is far away in space, and every contact waits for its bodies; then they change places, to the order of the
-/// tree's leaves along its Morton curve. Ids stay: of two bodies the one with the smaller id is the first, and sums
-/// are made in the order of ids, so that no bit of the result depends on places. Whoever looks at the simulation finds
-/// everything in the order of ids: before that, all bodies come home.
+/// Where particles lie in the arrays over bodies. They start in the order of their ids. Once they have mixed, what
+/// follows in memory is far away in space, and every contact waits for its bodies; then they change places, to the
+/// order of the tree's leaves along its Morton curve. Ids stay: of two bodies the one with the smaller id is the first,
+/// and sums are made in the order of ids, so that no bit of the result depends on places. Whoever looks at the
+/// simulation finds everything in the order of ids: before that, all bodies come home.
 #ifndef SCREE_PLACES_H
 #define SCREE_PLACES_H
 
@@ -35,6 +35,9 @@ const int32_t *scree_ids(const scree_simulation *simulation);
 /// Of the ids, or NULL.
 const int32_t *scree_places_of_ids(const scree_simulation *simulation);
 
+/// At the next search, before the next step, the particle in place order[k] comes to place k. `order` (num_particles)
+/// lies where the arrays do. SCREE_OUT_OF_MEMORY.
+scree_status scree_ask_for_places(scree_simulation *simulation, const int32_t *order);
 /// After a search: is it time to change places? Then the next step searches again. SCREE_OUT_OF_MEMORY.
 scree_status scree_compare_places(scree_simulation *simulation);
 /// Before a search: particles change places if it is time. What is known of pairs and contacts follows them.

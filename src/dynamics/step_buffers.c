@@ -72,7 +72,9 @@ scree_status scree_step_buffers_create(scree_simulation *simulation)
     SCREE_ALLOCATE(wall_input, num_walls)
 #undef SCREE_ALLOCATE
     // the simulation's destroy frees what there is
-    if (!is_complete || scree_step_board_create(b, simulation->particles.num_particles, simulation->num_walls) != SCREE_OK) return SCREE_OUT_OF_MEMORY;
+    if (!is_complete ||
+        scree_step_board_create(b, simulation->particles.num_particles, simulation->num_walls) != SCREE_OK)
+        return SCREE_OUT_OF_MEMORY;
 
     for (size_t i = 0; i < num_particles; ++i)
     {

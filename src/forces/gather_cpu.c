@@ -1,7 +1,7 @@
 /// \file gather_cpu.c
 /// Forces on particles on the CPU: the sums of gather_kernel.h without its rows. While places are ids the contacts are
-/// sorted by (i, j), so whoever takes one after the other and adds its force to both bodies adds to each in the order of its row. What a
-/// contact adds is computed in groups of lanes (lanes.h).
+/// sorted by (i, j), so whoever takes one after the other and adds its force to both bodies adds to each in the order
+/// of its row. What a contact adds is computed in groups of lanes (lanes.h).
 ///
 /// A thread has a range of particles and takes the contacts whose first body is one of them. The contacts of a particle
 /// with particles of lower ranges come first in its row; the few that have such are summed along their rows.

@@ -16,11 +16,11 @@ typedef struct scree_gather_args
     const int64_t *row_begin; ///< (num_bodies + 1) rows of candidate pairs
     const int32_t *row_pairs; ///< (2 num_pairs)
     bool are_ids; ///< are the contacts sorted by (i, j), because places are ids? Then the CPU needs no rows either
-    const scree_pose *pose;   ///< (num_bodies)
-    const scree_real *mass;   ///< [kg] (num_particles)
-    scree_vec3 gravity;       ///< [m/s^2]
-    scree_vec3 *force;        ///< [N] (num_particles) out
-    scree_vec3 *torque;       ///< [N m] (num_particles) out, world axes
+    const scree_pose *pose; ///< (num_bodies)
+    const scree_real *mass; ///< [kg] (num_particles)
+    scree_vec3 gravity;     ///< [m/s^2]
+    scree_vec3 *force;      ///< [N] (num_particles) out
+    scree_vec3 *torque;     ///< [N m] (num_particles) out, world axes
 } scree_gather_args;
 
 /// Adds contact c to the sums of particle i.

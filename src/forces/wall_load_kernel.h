@@ -1,7 +1,7 @@
 /// \file wall_load_kernel.h
 /// What moving walls exert on the particles along their motion: the torque about the axis of one that rotates, the
-/// force along the velocity of one that translates. Particles are summed in blocks of following ids, so the sum does not
-/// depend on the number of threads, nor on which candidate pairs there are, nor on the order of the contacts.
+/// force along the velocity of one that translates. Particles are summed in blocks of following ids, so the sum does
+/// not depend on the number of threads, nor on which candidate pairs there are, nor on the order of the contacts.
 #ifndef SCREE_WALL_LOAD_KERNEL_H
 #define SCREE_WALL_LOAD_KERNEL_H
 

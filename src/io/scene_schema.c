@@ -414,8 +414,9 @@ static const scree_scene_key solver_keys[] = {
          "changes no result"},
     {.name = "reorder_particles",
      .default_text = "true",
-     .meaning = "whether particles that have mixed change places in memory, to lie near their neighbours along a Morton "
-                "curve; ids and order of what is written stay"},
+     .meaning =
+         "whether particles that have mixed change places in memory, to lie near their neighbours along a Morton "
+         "curve; ids and order of what is written stay"},
     {.name = "compare_spheres",
      .default_text = "true",
      .meaning = "whether particles are candidates only if their bounding spheres overlap, and not only their boxes"},

@@ -33,7 +33,6 @@ SCREE_DECLARE_LAUNCH_CUDA(scree_mesh_gap)
 SCREE_DECLARE_LAUNCH_CUDA(scree_mesh_write)
 SCREE_DECLARE_LAUNCH_CUDA(scree_room)
 SCREE_DECLARE_LAUNCH_CUDA(scree_work_reduce)
-SCREE_DECLARE_LAUNCH_CUDA(scree_ended)
 SCREE_DECLARE_LAUNCH_CUDA(scree_wall_load_reduce)
 SCREE_DECLARE_LAUNCH_CUDA(scree_indentations)
 
@@ -90,11 +89,19 @@ static void keep_geometry(side &where, const scree_contact_list &list, int64_t n
     where.keep(list.arm, n);
 }
 
+/// Other ids than their places for all particles, from the last one down; the same the other way round.
+static std::vector<int32_t> ids()
+{
+    std::vector<int32_t> ids;
+    for (int32_t k = 0; k < num_bodies; ++k) ids.push_back(k < num_particles ? (int32_t)num_particles - 1 - k : k);
+    return ids;
+}
+
 static scree_pair_groups groups_on(side &where, const int32_t *first, const int32_t *second, int64_t stride,
                                    int64_t num)
 {
     int32_t *bounds = where.zeros<int32_t>(2 * num_bodies);
-    const scree_pair_groups groups = {first, second, stride, num, bounds, bounds + num_bodies};
+    const scree_pair_groups groups = {first, second, nullptr, stride, num, bounds, bounds + num_bodies};
     LAUNCH_ON(where, scree_group_bounds, groups, num);
     where.keep(bounds, 2 * num_bodies);
     return groups;
@@ -355,15 +362,31 @@ static void test_forces()
     compare_forces(true);
 }
 
-static void test_work()
+/// `k`: 0: bodies at home and old contacts of the same pairs; 1: in other places, and old contacts in groups.
+static void compare_work(int k)
 {
     check_two_sides(
-        [](side &where)
+        [k](side &where)
         {
-            const int64_t n = s->contacts.num_contacts, num_blocks = (n + SCREE_WORK_BLOCK - 1) / SCREE_WORK_BLOCK;
-            scree_work_args work;
-            work.contacts = contacts_on(where, s->contacts, s->broad_phase.num_pairs);
+            const scree_contact_list *old = &s->old_contacts;
+            const int64_t num_pairs = s->broad_phase.num_pairs, num_old = old->num_contacts;
+            const int64_t num_blocks = scree_count_blocks(num_particles, SCREE_WORK_BLOCK);
+            std::vector<uint8_t> is_continued;
+            for (int64_t o = 0; o < num_old; ++o) is_continued.push_back(o % 3 != 0);
+            const scree_pair_groups groups =
+                groups_on(where, &where.copy(old->bodies, num_old)->i, nullptr, 2, num_old);
+            scree_work_args work = {};
+            work.contacts = contacts_on(where, s->contacts, num_pairs);
+            work.own_begin = where.copy(s->broad_phase.own_begin, num_bodies + 1);
+            work.old.elastic_energy = where.copy(old->elastic_energy, num_old);
+            work.old.spring_energy = where.copy(old->spring_energy, num_old);
+            work.old.is_continued = where.copy(is_continued.data(), num_old);
+            work.old.first_of_pair = k == 0 ? where.copy(old->first_of_pair, num_pairs + 1) : nullptr;
+            work.old.group_begin = groups.begin;
+            work.old.group_end = groups.end;
             work.bodies = motion_on(where);
+            work.ids = work.places = k == 0 ? nullptr : where.copy(ids().data(), num_bodies);
+            work.of_bodies = where.make<scree_real>(4 * num_particles);
             work.inertia = where.copy(s->particles.inertia, num_particles);
             work.laws = where.copy(s->laws, s->num_materials * s->num_materials);
             work.num_materials = s->num_materials;
@@ -373,6 +396,13 @@ static void test_work()
             LAUNCH_ON(where, scree_work, work, num_blocks);
             where.keep(work.sums, num_blocks);
         });
+}
+
+static void test_work()
+{
+    SCREE_CHECK(s->old_contacts.num_contacts > 40);
+    compare_work(0);
+    compare_work(1);
 }
 
 /// Sums of many parts, against sums in one go where the order does not matter.
@@ -391,10 +421,10 @@ static void test_sums()
                 all += (double)x;
             }
             scree_work_reduce_args reduce = {where.copy(parts.data(), num), num,
-                                             where.make<scree_work_sums>(num_groups), 1};
+                                             where.make<scree_work_sums>(num_groups)};
             LAUNCH_ON(where, scree_work_reduce, reduce, num_groups);
             where.keep(reduce.sums, num_groups);
-            reduce = {reduce.sums, num_groups, where.make<scree_work_sums>(1), SCREE_SUM_FAN_IN};
+            reduce = {reduce.sums, num_groups, where.make<scree_work_sums>(1)};
             LAUNCH_ON(where, scree_work_reduce, reduce, 1);
             where.keep(reduce.sums, 1);
             const scree_work_sums sum = where.read(reduce.sums, 1)[0];
@@ -404,7 +434,7 @@ static void test_sums()
             std::vector<scree_real> loads;
             for (int64_t k = 0; k < num * num_moving; ++k) loads.push_back((scree_real)(k % 7));
             const scree_wall_load_reduce_args wall = {where.copy(loads.data(), num * num_moving), num, num_moving,
-                                                      where.make<scree_real>(num_groups * num_moving), 1};
+                                                      where.make<scree_real>(num_groups * num_moving)};
             LAUNCH_ON(where, scree_wall_load_reduce, wall, num_groups * num_moving);
             where.keep(wall.sums, num_groups * num_moving);
         });
@@ -433,34 +463,17 @@ static void test_room()
             });
 }
 
-/// What ended contacts leave, and the largest indentation.
-static void test_ended()
+static void test_indentations()
 {
     check_two_sides(
         [](side &where)
         {
             const scree_contact_list *c = &s->contacts;
-            const int64_t n = c->num_contacts, num_blocks = (n + SCREE_WORK_BLOCK - 1) / SCREE_WORK_BLOCK;
-            std::vector<uint8_t> is_continued;
-            double left = 0, largest = 0;
-            for (int64_t k = 0; k < n; ++k)
-            {
-                is_continued.push_back(k % 3 != 0);
-                if (k % 3 == 0) left += (double)c->elastic_energy[k];
-                largest = fmax(largest, (double)c->indentation[k]);
-            }
-            const scree_ended_args ended = {where.copy(c->elastic_energy, n), where.copy(c->spring_energy, n),
-                                            where.copy(is_continued.data(), n), n,
-                                            where.make<scree_work_sums>(num_blocks)};
-            LAUNCH_ON(where, scree_ended, ended, num_blocks);
-            where.keep(ended.sums, num_blocks);
-            double sum = 0;
-            for (const scree_work_sums &part : where.read(ended.sums, num_blocks)) sum += (double)part.hysteresis;
-            // terms of one sign, each addition rounded once
-            SCREE_CHECK(left > 0 && fabs(sum - left) <= (double)n * (double)SCREE_REAL_EPSILON * left);
-
+            const int64_t n = c->num_contacts;
+            double largest = 0;
+            for (int64_t k = 0; k < n; ++k) largest = fmax(largest, (double)c->indentation[k]);
             const scree_indentations_args args = {where.copy(c->indentation, n), n, where.zeros<scree_maximum>(1)};
-            LAUNCH_ON(where, scree_indentations, args, num_blocks);
+            LAUNCH_ON(where, scree_indentations, args, scree_count_blocks(n, SCREE_CONTACT_BLOCK));
             where.keep(args.largest, 1);
             SCREE_CHECK(largest > 0 && scree_maximum_value(where.read(args.largest, 1)[0]) == largest);
         });
@@ -498,6 +511,8 @@ static void test_collisions()
             for (int64_t o = 0; o < num_old; ++o) places.push_back(places.back() + (o % 5 == 0));
             scree_ended_collisions_args ended = {};
             ended.bodies = where.copy(s->old_contacts.bodies, num_old);
+            ended.patch = where.copy(s->old_contacts.patch, num_old);
+            ended.ids = where.copy(ids().data(), num_bodies);
             ended.is_continued = where.copy(is_continued.data(), num_old);
             ended.normal = args.old_normal;
             ended.tangential = args.old_tangential;
@@ -514,6 +529,9 @@ static void test_collisions()
                 const int32_t is_with_wall = s->old_contacts.bodies[o].j >= num_particles;
                 SCREE_CHECK(collision.normal == normal[(size_t)o] && collision.tangential == tangential[(size_t)o]);
                 SCREE_CHECK_INT(collision.is_with_wall, is_with_wall);
+                SCREE_CHECK_INT(collision.first, ids()[(size_t)s->old_contacts.bodies[o].i]);
+                SCREE_CHECK_INT(collision.second, ids()[(size_t)s->old_contacts.bodies[o].j]);
+                SCREE_CHECK_INT(collision.patch, s->old_contacts.patch[o]);
                 o += 5;
             }
         });
@@ -525,17 +543,19 @@ static void test_wall_loads()
     check_two_sides(
         [](side &where)
         {
-            const int64_t num_blocks = (s->contacts.num_contacts + SCREE_WALL_LOAD_BLOCK - 1) / SCREE_WALL_LOAD_BLOCK;
+            const int64_t num_pairs = s->broad_phase.num_pairs, num_moving = b->num_moving_walls;
+            const int64_t num_sums = scree_count_blocks(num_particles, SCREE_WALL_LOAD_BLOCK) * num_moving;
             scree_wall_load_args args = {};
-            args.contacts = contacts_on(where, s->contacts, s->broad_phase.num_pairs);
+            args.contacts = contacts_on(where, s->contacts, num_pairs);
+            args.pairs = where.copy(s->broad_phase.pairs, num_pairs);
+            args.row_begin = where.copy(s->broad_phase.row_begin, num_bodies + 1);
+            args.row_pairs = where.copy(s->broad_phase.row_pairs, 2 * num_pairs);
             args.pose = where.copy(b->pose, num_bodies);
-            args.moving = where.copy(b->moving_wall, s->num_walls);
-            args.axes = where.copy(b->wall_axes, b->num_moving_walls);
-            args.num_moving = b->num_moving_walls;
-            args.num_particles = (int32_t)num_particles;
-            args.sums = where.make<scree_real>(num_blocks * args.num_moving);
-            LAUNCH_ON(where, scree_wall_load, args, num_blocks);
-            where.keep(args.sums, num_blocks * args.num_moving);
+            args.axes = where.copy(b->wall_axes, num_moving);
+            args.num_moving = num_moving;
+            args.sums = where.make<scree_real>(num_sums);
+            LAUNCH_ON(where, scree_wall_load, args, num_sums);
+            where.keep(args.sums, num_sums);
         });
 }
 
@@ -547,6 +567,8 @@ int main()
     if (run.simulation == nullptr) return EXIT_FAILURE;
     s = run.simulation;
     b = s->buffers;
+    // the old contacts are those of the same pairs
+    while (b->has_old_groups) SCREE_CHECK_INT(scree_simulation_step(s, NULL), SCREE_OK);
     num_particles = s->particles.num_particles;
     num_bodies = num_particles + s->num_walls;
     printf("%lld pairs, %lld contacts\n", (long long)s->broad_phase.num_pairs, (long long)s->contacts.num_contacts);
@@ -560,7 +582,7 @@ int main()
     SCREE_RUN(test_wall_loads);
     SCREE_RUN(test_sums);
     SCREE_RUN(test_room);
-    SCREE_RUN(test_ended);
+    SCREE_RUN(test_indentations);
     SCREE_RUN(test_collisions);
     scene_run_end(&run);
     return SCREE_TEST_END();

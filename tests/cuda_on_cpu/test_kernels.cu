@@ -13,6 +13,8 @@ SCREE_DECLARE_LAUNCH_CUDA(scree_lbvh_nodes)
 SCREE_DECLARE_LAUNCH_CUDA(scree_particle_pairs)
 SCREE_DECLARE_LAUNCH_CUDA(scree_wall_pairs)
 SCREE_DECLARE_LAUNCH_CUDA(scree_pair_unpack)
+SCREE_DECLARE_LAUNCH_CUDA(scree_pair_own)
+SCREE_DECLARE_LAUNCH_CUDA(scree_pair_second_keys)
 SCREE_DECLARE_LAUNCH_CUDA(scree_pair_second_begin)
 SCREE_DECLARE_LAUNCH_CUDA(scree_pair_row_begin)
 SCREE_DECLARE_LAUNCH_CUDA(scree_pair_rows)
@@ -23,6 +25,13 @@ SCREE_DECLARE_LAUNCH_CUDA(scree_travel)
 SCREE_DECLARE_LAUNCH_CUDA(scree_skin)
 SCREE_DECLARE_LAUNCH_CUDA(scree_place_walls)
 SCREE_DECLARE_LAUNCH_CUDA(scree_place_particles)
+SCREE_DECLARE_LAUNCH_CUDA(scree_far_followers)
+SCREE_DECLARE_LAUNCH_CUDA(scree_home_order)
+SCREE_DECLARE_LAUNCH_CUDA(scree_new_places)
+SCREE_DECLARE_LAUNCH_CUDA(scree_move_pairs)
+SCREE_DECLARE_LAUNCH_CUDA(scree_group_sizes)
+SCREE_DECLARE_LAUNCH_CUDA(scree_sort_groups)
+SCREE_DECLARE_LAUNCH_CUDA(scree_permute)
 
 // ---- motion
 
@@ -62,6 +71,7 @@ static void test_correct()
             args.particles = particles_on(where);
             args.time_step = (scree_real)s->time_step;
             args.moving = where.zeros<scree_moving_body>(num_particles);
+            args.ids = nullptr;
             args.tally = where.zeros<scree_step_tally>(1);
             std::vector<scree_vec3> position(s->particles.position, s->particles.position + num_particles);
             position[17].x = position[19].y = NAN;
@@ -262,8 +272,16 @@ static void test_tree()
     scree_lbvh_destroy(&tree);
 }
 
+/// Ids of the bodies in all places, the particles' from the last one down; the other way round they are the same.
+static std::vector<int32_t> reversed()
+{
+    std::vector<int32_t> ids;
+    for (int32_t k = 0; k < num_bodies; ++k) ids.push_back(k < num_particles ? (int32_t)num_particles - 1 - k : k);
+    return ids;
+}
+
 /// Keys of all pairs, in no order; as the broad phase, asks again if the list was too short.
-static uint64_t *find_keys_on(side &where, int32_t id_bits, int64_t *num_keys)
+static uint64_t *find_keys_on(side &where, int32_t id_bits, const int32_t *ids, int64_t *num_keys)
 {
     scree_particle_pairs_args particle_args = {};
     particle_args.tree = build_tree_on(where, boxes.data(), num_particles);
@@ -281,6 +299,7 @@ static uint64_t *find_keys_on(side &where, int32_t id_bits, int64_t *num_keys)
 
     scree_pair_list list = {};
     list.id_bits = id_bits;
+    list.ids = ids;
     for (int64_t max_keys = 10;; max_keys = *num_keys)
     {
         list.max_keys = max_keys;
@@ -294,12 +313,12 @@ static uint64_t *find_keys_on(side &where, int32_t id_bits, int64_t *num_keys)
     }
 }
 
-static void find_pairs_on(side &where)
+static void find_pairs_of(side &where, const int32_t *ids)
 {
     int64_t num_pairs;
     const int32_t id_bits = 12;
     scree_pair_rows_args args = {};
-    uint64_t *keys = find_keys_on(where, id_bits, &num_pairs);
+    uint64_t *keys = find_keys_on(where, id_bits, ids, &num_pairs);
     int32_t *values = where.make<int32_t>(num_pairs);
     where.outcome.clear();
     sort_on(where, keys, values, num_pairs, 0);
@@ -313,7 +332,24 @@ static void find_pairs_on(side &where)
     args.num_pairs = num_pairs;
     args.num_bodies = num_bodies;
     args.id_bits = id_bits;
+    args.ids = args.places = ids;
     LAUNCH_ON(where, scree_pair_unpack, args, num_pairs);
+    if (ids != nullptr)
+    {
+        args.own_before = where.make<int32_t>(num_bodies + 1);
+        LAUNCH_ON(where, scree_pair_own, args, num_bodies);
+        where.keep(args.own_before, num_bodies);
+        std::vector<int32_t> before = where.read(args.own_before, num_bodies);
+        int32_t sum = 0;
+        for (int32_t &num : before)
+        {
+            const int32_t own = num;
+            num = sum;
+            sum += own;
+        }
+        args.own_before = where.copy(before.data(), num_bodies);
+    }
+    LAUNCH_ON(where, scree_pair_second_keys, args, num_pairs);
     sort_on(where, args.second_keys, values, num_pairs, 32);
     LAUNCH_ON(where, scree_pair_second_begin, args, num_pairs);
     LAUNCH_ON(where, scree_pair_row_begin, args, num_bodies + 1);
@@ -323,9 +359,14 @@ static void find_pairs_on(side &where)
     where.keep(args.row_pairs, 2 * num_pairs);
 }
 
+static void find_pairs_on(side &where) { find_pairs_of(where, nullptr); }
+
+static void find_pairs_elsewhere_on(side &where) { find_pairs_of(where, where.copy(reversed().data(), num_bodies)); }
+
 static void test_pairs()
 {
     check_two_sides(find_pairs_on);
+    check_two_sides(find_pairs_elsewhere_on);
 
     // and they are those of the library, from the same boxes
     side device(true, 128), library(false);
@@ -336,6 +377,66 @@ static void test_pairs()
     library.keep(broad_phase->row_pairs, 2 * broad_phase->num_pairs);
     SCREE_CHECK(broad_phase->num_pairs > 200);
     SCREE_CHECK(device.outcome == library.outcome);
+}
+
+// ---- places
+
+static void test_places()
+{
+    check_two_sides(
+        [](side &where)
+        {
+            const scree_home_order_args home = {where.make<int32_t>(num_bodies), where.make<int32_t>(num_bodies),
+                                                where.make<int32_t>(num_bodies)};
+            LAUNCH_ON(where, scree_home_order, home, num_bodies);
+            where.keep(home.order, num_bodies);
+            std::vector<int32_t> order;
+            for (int64_t k = 0; k < num_bodies; ++k) order.push_back((int32_t)((k + 5) % num_bodies));
+            scree_new_places_args places = {where.copy(order.data(), num_bodies), home.ids,
+                                            where.make<int32_t>(num_bodies), home.places,
+                                            where.make<int32_t>(num_bodies)};
+            LAUNCH_ON(where, scree_new_places, places, num_bodies);
+            where.keep(places.ids, num_bodies);
+            where.keep(places.places, num_bodies);
+            where.keep(places.moved_to, num_bodies);
+            const int64_t num_pairs = s->broad_phase.num_pairs;
+            const scree_move_pairs_args pairs = {where.copy(s->broad_phase.pairs, num_pairs), places.moved_to};
+            LAUNCH_ON(where, scree_move_pairs, pairs, num_pairs);
+            where.keep(pairs.pairs, num_pairs);
+            const scree_permute_args poses = {where.copy(b->pose, num_bodies), where.make<scree_pose>(num_bodies),
+                                              places.order, sizeof(scree_pose)};
+            LAUNCH_ON(where, scree_permute, poses, num_bodies);
+            where.keep((const scree_pose *)poses.to, num_bodies);
+            std::vector<uint8_t> marks((size_t)num_bodies, 3);
+            marks[5] = 9;
+            const scree_permute_args bytes = {where.copy(marks.data(), num_bodies), where.make<uint8_t>(num_bodies),
+                                              places.order, 1};
+            LAUNCH_ON(where, scree_permute, bytes, num_bodies);
+            where.keep((const uint8_t *)bytes.to, num_bodies);
+
+            scree_far_followers_args far = {where.copy(b->centres, num_particles), where.copy(b->radii, num_particles),
+                                            num_particles, where.zeros<int64_t>(1)};
+            LAUNCH_ON(where, scree_far_followers, far, (num_particles + SCREE_FAR_BLOCK - 1) / SCREE_FAR_BLOCK);
+            where.keep(far.num_far, 1);
+
+            // three groups in an order of their own
+            std::vector<int32_t> begin((size_t)num_bodies, 0), end((size_t)num_bodies, 0), first((size_t)num_bodies, 0);
+            begin[9] = 0;
+            end[9] = begin[2] = 2;
+            end[2] = begin[4] = 5;
+            end[4] = 6;
+            scree_sort_groups_args groups = {where.copy(begin.data(), num_bodies), where.copy(end.data(), num_bodies),
+                                             where.make<int32_t>(num_bodies), where.make<int32_t>(6)};
+            LAUNCH_ON(where, scree_group_sizes, groups, num_bodies);
+            where.keep(groups.first, num_bodies);
+            for (int k = 3; k < num_bodies; ++k) first[(size_t)k] = k <= 4 ? 3 : k <= 9 ? 4 : 6;
+            groups.first = where.copy(first.data(), num_bodies);
+            LAUNCH_ON(where, scree_sort_groups, groups, num_bodies);
+            where.keep(groups.order, 6);
+            const int32_t wanted[6] = {2, 3, 4, 5, 0, 1};
+            const std::vector<int32_t> found = where.read(groups.order, 6);
+            for (int k = 0; k < 6; ++k) SCREE_CHECK_INT(found[(size_t)k], wanted[k]);
+        });
 }
 
 int main()
@@ -360,6 +461,7 @@ int main()
     SCREE_RUN(test_skin);
     SCREE_RUN(test_tree);
     SCREE_RUN(test_pairs);
+    SCREE_RUN(test_places);
     scene_run_end(&run);
     return SCREE_TEST_END();
 }

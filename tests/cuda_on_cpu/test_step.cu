@@ -191,6 +191,49 @@ static void test_call_by_call()
     scree_device_close(device);
 #endif
 }
+/// Particles change places on the device every few steps, and come home when somebody looks.
+static void check_places(const std::string &text)
+{
+    scene_run here, there;
+    scene_run_start(&here, text.c_str());
+    scene_run_start(&there, text.c_str());
+    scree_device *device = open_device(128);
+    move(there.simulation, device);
+    scree_simulation *s = there.simulation->there;
+    const int64_t num = s->particles.num_particles;
+    int32_t *order = (int32_t *)scree_device_alloc(device, num, sizeof *order);
+    uint64_t state = 23;
+    int64_t num_away = 0;
+    for (int k = 1; k <= 120; ++k)
+    {
+        if (k % 10 == 0)
+        {
+            std::vector<int32_t> places;
+            for (int32_t p = 0; p < num; ++p) places.push_back(p);
+            for (size_t p = places.size() - 1; p > 0; --p)
+                std::swap(places[p], places[(size_t)(scree_test_random(&state) * (double)(p + 1))]);
+            scree_device_write(device, order, places.data(), (size_t)num * sizeof *order);
+            SCREE_CHECK_INT(scree_ask_for_places(s, order), SCREE_OK);
+        }
+        steps(here.simulation, 1);
+        steps(there.simulation, 1);
+        num_away += s->buffers->places.are_ids ? 0 : 1;
+        if (k % 40 == 0) check_same(here.simulation, there.simulation);
+    }
+    printf("%s: away from home in %lld steps, %lld steps played\n", here.file.scene.name, (long long)num_away,
+           (long long)s->buffers->num_halts[SCREE_HALT_NONE]);
+    SCREE_CHECK(num_away > 60 && s->buffers->num_halts[SCREE_HALT_NONE] > 60);
+    scree_device_free(device, order);
+    scene_run_end(&there);
+    SCREE_CHECK_INT(scree_device_status(device, NULL), SCREE_OK);
+    scree_device_close(device);
+    scene_run_end(&here);
+}
+static void test_places()
+{
+    check_places(spheres());
+    check_places(mixed());
+}
 static void test_patches() { check_scene(patches(), 128, 2); }
 
 /// From a checkpoint of the CPU on the device, and from one of the device on the CPU: the unbroken run.
@@ -356,6 +399,7 @@ int main()
     SCREE_RUN(test_teams_of_one_size);
     SCREE_RUN(test_mixed);
     SCREE_RUN(test_patches);
+    SCREE_RUN(test_places);
     SCREE_RUN(test_no_room);
     SCREE_RUN(test_call_by_call);
     SCREE_RUN(test_sides_change_at_checkpoints);

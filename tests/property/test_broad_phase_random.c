@@ -89,7 +89,13 @@ static void make_scene(scene *s, int round, uint64_t *state)
         s->walls[w] = (scree_broad_phase_wall){s->trees[w].view, random_pose(s->kind->extent, state),
                                                scree_test_random(state) < 0.8};
     }
-    s->input = (scree_broad_phase_input){s->boxes, s->centres, s->radii, s->walls, num, num_walls, compares_spheres};
+    s->input = (scree_broad_phase_input){.boxes = s->boxes,
+                                         .centres = s->centres,
+                                         .radii = s->radii,
+                                         .walls = s->walls,
+                                         .num_particles = num,
+                                         .num_walls = num_walls,
+                                         .compares_spheres = compares_spheres};
 }
 
 static void destroy_scene(scene *s)

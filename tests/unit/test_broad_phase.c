@@ -306,7 +306,12 @@ static void make_crowd(crowd *c, int64_t num)
     c->floor = make_floor();
     c->walls[0] = (scree_broad_phase_wall){c->floor.view, make_pose(-6, -6, -2, 2), true};
     c->walls[1] = (scree_broad_phase_wall){c->floor.view, make_pose(-6, 0, 3, 2), true};
-    c->input = (scree_broad_phase_input){c->boxes, c->centres, c->radii, c->walls, num, 2, false};
+    c->input = (scree_broad_phase_input){.boxes = c->boxes,
+                                         .centres = c->centres,
+                                         .radii = c->radii,
+                                         .walls = c->walls,
+                                         .num_particles = num,
+                                         .num_walls = 2};
 }
 
 static void destroy_crowd(crowd *c)
@@ -360,7 +365,7 @@ static void test_plain_kernels_find_the_same(void)
     for (int order = 0; order < SCREE_TEST_NUM_ORDERS; ++order)
     {
         int64_t num_keys = 0;
-        const scree_pair_list list = {sort.keys, &num_keys, broad_phase.num_pairs, 13};
+        const scree_pair_list list = {sort.keys, &num_keys, broad_phase.num_pairs, NULL, 13};
         const scree_particle_pairs_args particle_args = {broad_phase.tree.view, list, NULL, NULL};
         const scree_wall_pairs_args wall_args = {c.centres, c.radii, c.walls, 4000, 2, 1 + 20 * order, list};
         SCREE_LAUNCH_IN_ORDER(scree_particle_pairs, particle_args, 2 * 4000 - 1, order);
@@ -375,7 +380,7 @@ static void test_plain_kernels_find_the_same(void)
     // a list that is too short counts on and does not write past its end
     int64_t num_keys = 0;
     sort.keys[100] = 12345;
-    const scree_particle_pairs_args args = {broad_phase.tree.view, {sort.keys, &num_keys, 100, 13}, NULL, NULL};
+    const scree_particle_pairs_args args = {broad_phase.tree.view, {sort.keys, &num_keys, 100, NULL, 13}, NULL, NULL};
     scree_particle_pairs_find(args);
     const int64_t num_found = num_keys;
     num_keys = 0;
@@ -401,7 +406,7 @@ static void test_clusters_across_blocks(void)
     scree_lbvh tree = {0};
     SCREE_CHECK(scree_lbvh_build(&tree, boxes, NUM) == SCREE_OK);
     int64_t num_keys = 0;
-    const scree_particle_pairs_args args = {tree.view, {NULL, &num_keys, 0, 15}, NULL, NULL}; // only counted
+    const scree_particle_pairs_args args = {tree.view, {NULL, &num_keys, 0, NULL, 15}, NULL, NULL}; // only counted
     scree_particle_pairs_find(args);
     // within a group all, and the last box of a group with all but the last of the next one: 1 - 0.4 < 2 0.4 < 1
     SCREE_CHECK_INT(num_keys, NUM_GROUPS * (32 * 31 / 2) + (NUM_GROUPS - 1) * 31);
@@ -430,9 +435,18 @@ static void test_rows_in_any_order(void)
         scree_candidate_pair pairs[NUM_PAIRS];
         int32_t first_as_i[NUM_BODIES + 1], first_as_j[NUM_BODIES + 1], found_pairs[2 * NUM_PAIRS];
         int64_t found_begin[NUM_BODIES + 1];
-        const scree_pair_rows_args args = {keys,        sort.keys,   pairs,     first_as_i, first_as_j,
-                                           found_begin, found_pairs, NUM_PAIRS, NUM_BODIES, 4};
+        const scree_pair_rows_args args = {.keys = keys,
+                                           .second_keys = sort.keys,
+                                           .pairs = pairs,
+                                           .first_as_i = first_as_i,
+                                           .first_as_j = first_as_j,
+                                           .row_begin = found_begin,
+                                           .row_pairs = found_pairs,
+                                           .num_pairs = NUM_PAIRS,
+                                           .num_bodies = NUM_BODIES,
+                                           .id_bits = 4};
         SCREE_LAUNCH_IN_ORDER(scree_pair_unpack, args, NUM_PAIRS, order);
+        SCREE_LAUNCH_IN_ORDER(scree_pair_second_keys, args, NUM_PAIRS, order);
         scree_sort(&sort, NUM_PAIRS, 32);
         SCREE_LAUNCH_IN_ORDER(scree_pair_second_begin, args, NUM_PAIRS, order);
         SCREE_LAUNCH_IN_ORDER(scree_pair_row_begin, args, NUM_BODIES + 1, order);

@@ -74,20 +74,20 @@ static void test_validate_finds_faults(void)
     scree_contact_list list = {0};
     const scree_candidate_pair bodies[] = {{0, 1}, {0, 2}, {1, 2}};
     fill(&list, bodies, 3);
-    SCREE_CHECK(scree_contact_list_validate(&list, NULL));
+    SCREE_CHECK(scree_contact_list_validate(&list, NULL, NULL));
     list.bodies[1].j = 1;
-    SCREE_CHECK(!scree_contact_list_validate(&list, NULL));
+    SCREE_CHECK(!scree_contact_list_validate(&list, NULL, NULL));
     list.bodies[1].j = 2;
     list.volume[2] = 0;
-    SCREE_CHECK(!scree_contact_list_validate(&list, NULL));
+    SCREE_CHECK(!scree_contact_list_validate(&list, NULL, NULL));
     list.volume[2] = NAN;
-    SCREE_CHECK(!scree_contact_list_validate(&list, NULL));
+    SCREE_CHECK(!scree_contact_list_validate(&list, NULL, NULL));
     list.volume[2] = 1;
     list.normal[0].z = 1.001;
-    SCREE_CHECK(!scree_contact_list_validate(&list, NULL));
+    SCREE_CHECK(!scree_contact_list_validate(&list, NULL, NULL));
     list.normal[0].z = 1;
     list.bodies[0].i = 7;
-    SCREE_CHECK(!scree_contact_list_validate(&list, NULL));
+    SCREE_CHECK(!scree_contact_list_validate(&list, NULL, NULL));
     scree_contact_list_destroy(&list);
 }
 
@@ -103,7 +103,7 @@ static scree_history_match_args match_of(const scree_contact_list *now, const sc
                                      is_continued};
     if (bounds == NULL || old->num_contacts == 0) return args;
     args.old_groups =
-        (scree_pair_groups){&old->bodies->i, &old->bodies->j, 2, old->num_contacts, bounds, bounds + num_bodies};
+        (scree_pair_groups){&old->bodies->i, &old->bodies->j, NULL, 2, old->num_contacts, bounds, bounds + num_bodies};
     scree_group_bounds_launch(args.old_groups, old->num_contacts);
     return args;
 }

@@ -163,6 +163,7 @@ static void test_motion(void)
     correct.particles = *p;
     correct.time_step = (scree_real)1e-5;
     correct.moving = b->moving;
+    correct.ids = NULL;
     correct.tally = b->tally;
     for (int k = 0; k < 2; ++k)
     {
@@ -222,7 +223,7 @@ static void test_sums(void)
     gather.contacts = force.contacts;
     gather.sides = NULL;
     gather.max_sides = 0;
-    gather.own_begin = NULL;
+    gather.own_begin = s->broad_phase.own_begin;
     gather.row_begin = s->broad_phase.row_begin;
     gather.row_pairs = s->broad_phase.row_pairs;
     gather.pose = s->buffers->pose;
@@ -230,11 +231,24 @@ static void test_sums(void)
     gather.gravity = scree_vec3_make(0, (scree_real)0.5, (scree_real)-9.81);
     gather.force = p->force;
     gather.torque = p->torque;
-    output gathered[] = {OUTPUT(p->force, p->num_particles), OUTPUT(p->torque, p->num_particles)};
-    COMPARE(scree_gather, gather, p->num_particles, gathered);
+    // contact after contact, and along rows
+    for (int k = 0; k < 2; ++k)
+    {
+        gather.are_ids = k == 0;
+        output gathered[] = {OUTPUT(p->force, p->num_particles), OUTPUT(p->torque, p->num_particles)};
+        COMPARE(scree_gather, gather, p->num_particles, gathered);
+    }
 
     scree_work_args work;
     work.contacts = force.contacts;
+    work.own_begin = s->broad_phase.own_begin;
+    const scree_step_buffers *b = s->buffers;
+    work.old = (scree_old_contacts){s->old_contacts.elastic_energy,
+                                    s->old_contacts.spring_energy,
+                                    b->is_continued,
+                                    b->has_old_groups ? NULL : s->old_contacts.first_of_pair,
+                                    b->old_groups,
+                                    b->old_groups + p->num_particles + s->num_walls};
     work.bodies = force.bodies;
     work.inertia = p->inertia;
     work.laws = s->laws;
@@ -242,9 +256,30 @@ static void test_sums(void)
     work.num_particles = (int32_t)p->num_particles;
     work.time_step = force.time_step;
     work.sums = s->buffers->work_sums;
-    const int64_t num_blocks = (s->contacts.num_contacts + SCREE_WORK_BLOCK - 1) / SCREE_WORK_BLOCK;
+    const int64_t num_blocks = scree_count_blocks(p->num_particles, SCREE_WORK_BLOCK);
+    int32_t reversed[400];
+    scree_real of_bodies[4 * 400];
+    for (int32_t k = 0; k < p->num_particles; ++k) reversed[k] = (int32_t)p->num_particles - 1 - k;
+    work.ids = work.places = NULL;
+    work.of_bodies = of_bodies;
     output sums[] = {OUTPUT(work.sums, num_blocks)};
     COMPARE(scree_work, work, num_blocks, sums);
+
+    // with other ids; then the smallest step may stand in any block
+    scree_work_sums launched[2], smallest = work.sums[0];
+    SCREE_CHECK_INT(num_blocks, 2);
+    work.ids = work.places = reversed;
+    scree_work_launch(work, num_blocks);
+    memcpy(launched, work.sums, sizeof launched);
+    for (int64_t k = 0; k < num_blocks; ++k) scree_work_at(work, k);
+    for (int k = 0; k < 2; ++k)
+        SCREE_CHECK(launched[k].damping == work.sums[k].damping && launched[k].friction == work.sums[k].friction &&
+                    launched[k].hysteresis == work.sums[k].hysteresis && launched[k].input == work.sums[k].input);
+    SCREE_CHECK(launched[0].damping != smallest.damping && launched[1].input != 0);
+    for (int k = 0; k < 2; ++k)
+        smallest.smallest_step_squared = scree_min(smallest.smallest_step_squared, work.sums[k].smallest_step_squared);
+    SCREE_CHECK(smallest.smallest_step_squared ==
+                scree_min(launched[0].smallest_step_squared, launched[1].smallest_step_squared));
 }
 
 static void test_history(void)
@@ -256,8 +291,8 @@ static void test_history(void)
     match.pairs = s->broad_phase.pairs;
     match.first_of_pair = now->first_of_pair;
     match.old_first_of_pair = old->first_of_pair;
-    match.old_groups = (scree_pair_groups){&old->bodies->i,   &old->bodies->j, 2,
-                                           old->num_contacts, b->old_groups,   b->old_groups + num_bodies};
+    match.old_groups = (scree_pair_groups){&old->bodies->i, &old->bodies->j,           NULL, 2, old->num_contacts,
+                                           b->old_groups,   b->old_groups + num_bodies};
     memset(b->old_groups, 0, 2 * num_bodies * sizeof *b->old_groups);
     scree_group_bounds_launch(match.old_groups, old->num_contacts);
     match.patch = now->patch;

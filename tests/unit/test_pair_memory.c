@@ -86,7 +86,8 @@ static void check_lists(uint64_t *state, double old_share, double new_share)
         travel[b] = (scree_real)(0.1 * uniform(state));
         pose[b] = (scree_pose){.scale = 1};
     }
-    const scree_bodies bodies = {&view, shape, pose, travel, NUM_BODIES, 20, 0};
+    const scree_bodies bodies = {
+        .shapes = &view, .shape = shape, .pose = pose, .travel = travel, .num_bodies = NUM_BODIES, .num_steps = 20};
     for (int64_t m = 0; m < num_old; ++m)
     {
         const double kind = uniform(state);
@@ -98,7 +99,7 @@ static void check_lists(uint64_t *state, double old_share, double new_share)
     const scree_pair_keep_args keep = {bodies, pairs, batch, memory, kept_i, kept_j};
     for (int64_t m = num_old - 1; m >= 0; --m) scree_pair_keep_at(keep, m);
     int32_t begin[NUM_BODIES] = {0}, end[NUM_BODIES] = {0};
-    const scree_pair_groups kept = {kept_i, kept_j, 1, num_old, begin, end};
+    const scree_pair_groups kept = {kept_i, kept_j, NULL, 1, num_old, begin, end};
     for (int64_t k = num_old - 1; k >= 0; --k) scree_group_bounds_at(kept, k);
     const scree_pair_carry_args carry = {new_pairs, new_batch, new_memory, kept, memory};
     for (int64_t m = num_new - 1; m >= 0; --m) scree_pair_carry_at(carry, m);

@@ -84,17 +84,16 @@ scree_status scree_ask_for_places(scree_simulation *simulation, const int32_t *o
     return SCREE_OK;
 }
 
-scree_status scree_compare_places(scree_simulation *simulation)
+scree_status scree_compare_places(scree_simulation *simulation, const scree_broad_phase_input *input)
 {
-    scree_step_buffers *b = simulation->buffers;
-    scree_places *p = &b->places;
+    scree_places *p = &simulation->buffers->places;
     scree_device *device = simulation->device;
     const int64_t num = simulation->particles.num_particles;
     if (p->are_kept || p->has_short_stay || num <= p->few) return SCREE_OK;
     if (p->num_far == NULL) p->num_far = scree_device_alloc(device, 1, sizeof *p->num_far);
     if (p->num_far == NULL) return SCREE_OUT_OF_MEMORY;
     scree_device_zero(device, p->num_far, sizeof *p->num_far);
-    const scree_far_followers_args args = {b->centres, b->radii, num, p->num_far};
+    const scree_far_followers_args args = {input->centres, input->radii, num, p->num_far};
     scree_far_followers_launch_on(device, args, (num + SCREE_FAR_BLOCK - 1) / SCREE_FAR_BLOCK);
     int64_t num_far = 0;
     scree_device_read(device, &num_far, p->num_far, sizeof num_far);
@@ -115,7 +114,6 @@ static void move_bodies(scree_simulation *s)
     SCREE_MOVE(b->inverse_radius)
     SCREE_MOVE(b->shape)
     SCREE_MOVE(b->searched_pose)
-    SCREE_MOVE(b->last_pose)
     SCREE_MOVE(b->travel)
 #undef SCREE_MOVE
     scree_particles_permute(device, &s->particles, p->order, p->scratch);

@@ -38,8 +38,8 @@ const int32_t *scree_places_of_ids(const scree_simulation *simulation);
 /// At the next search, before the next step, the particle in place order[k] comes to place k. `order` (num_particles)
 /// lies where the arrays do. SCREE_OUT_OF_MEMORY.
 scree_status scree_ask_for_places(scree_simulation *simulation, const int32_t *order);
-/// After a search: is it time to change places? Then the next step searches again. SCREE_OUT_OF_MEMORY.
-scree_status scree_compare_places(scree_simulation *simulation);
+/// After the search of `input`: is it time to change places? Then the next step searches again. SCREE_OUT_OF_MEMORY.
+scree_status scree_compare_places(scree_simulation *simulation, const scree_broad_phase_input *input);
 /// Before a search: particles change places if it is time. What is known of pairs and contacts follows them.
 void scree_change_places(scree_simulation *simulation);
 /// All bodies to the places of their ids, contacts in the order of ids; the next step searches. SCREE_OUT_OF_MEMORY.

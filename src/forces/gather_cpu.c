@@ -191,8 +191,11 @@ SCREE_LANES_FUNCTION static void first_sides(scree_side_group *restrict g, const
 static void add_second(const scree_gather_args *a, scree_gather_list *list)
 {
     scree_side_group g = {0};
-    int32_t n = 0;
-    for (; n + SCREE_LANES <= list->num; n += SCREE_LANES)
+    int32_t n = 0, num_in_lanes = list->num;
+    // what is gathered reaches beyond each vector, and nothing stands behind the last one
+    for (int32_t k = 0; k < list->num; ++k)
+        if (list->contact[k] + 1 == a->contacts.num_contacts && k < num_in_lanes) num_in_lanes = k;
+    for (; n + SCREE_LANES <= num_in_lanes; n += SCREE_LANES)
     {
         second_sides(&g, a, list->contact + n, list->body + n);
         for (int l = 0; l < SCREE_LANES; ++l)

@@ -96,24 +96,37 @@ static scree_status add_in_turn(scree_bench *bench, const scree_bench_request *r
     return status;
 }
 
+/// The bed with one piece of work done after all, in turn with the bed.
+static scree_status add_saving(scree_bench *bench, scree_bench_bed bed, const scree_bench_bodies *reference,
+                               const char *name, saving saving)
+{
+    char text[96];
+    snprintf(text, sizeof text, "%s %s", name, saving.name);
+    bed.solver = saving.solver;
+    bed.like = reference->simulation;
+    scree_bench_bodies without;
+    scree_status status = scree_bench_bed_create(&without, &bed, bench->report);
+    if (status != SCREE_OK) return status;
+    const int threads = (int)bench->request->threads;
+    const scree_bench_way ways[2] = {{reference->simulation, threads}, {without.simulation, threads}};
+    status = add_in_turn(bench, bench->request, ways, &bed, (const char *const[2]){NULL, text});
+    scree_bench_bed_destroy(&without);
+    return status;
+}
+
 static scree_status add_savings(scree_bench *bench, scree_bench_bed bed, const char *name)
 {
     scree_bench_bodies reference;
-    const int threads = (int)bench->request->threads;
     scree_status status = scree_bench_bed_create(&reference, &bed, bench->report);
     for (size_t k = 0; k < sizeof savings / sizeof *savings && status == SCREE_OK; ++k)
-    {
-        char text[96];
-        snprintf(text, sizeof text, "%s %s", name, savings[k].name);
-        bed.solver = savings[k].solver;
-        bed.like = reference.simulation;
-        scree_bench_bodies without;
-        status = scree_bench_bed_create(&without, &bed, bench->report);
-        if (status != SCREE_OK) break;
-        const scree_bench_way ways[2] = {{reference.simulation, threads}, {without.simulation, threads}};
-        status = add_in_turn(bench, bench->request, ways, &bed, (const char *const[2]){NULL, text});
-        scree_bench_bed_destroy(&without);
-    }
+        status = add_saving(bench, bed, &reference, name, savings[k]);
+    scree_bench_bed_destroy(&reference);
+    if (status != SCREE_OK) return status;
+    // only bodies that have mixed change places
+    bed.order = "random";
+    status = scree_bench_bed_create(&reference, &bed, bench->report);
+    const saving places = {"mixed - reorder_particles", "reorder_particles: false"};
+    if (status == SCREE_OK) status = add_saving(bench, bed, &reference, name, places);
     scree_bench_bed_destroy(&reference);
     return status;
 }

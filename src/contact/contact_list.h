@@ -13,8 +13,8 @@
 
 /// Owns its arrays, all (num_contacts) unless stated. Start from {0}, or from {.device = ...} for a list on a GPU.
 /// The id of i is smaller than that of j, which may be a wall. Vectors in world axes. What a scene has no use for stays
-/// zero, is not touched, takes no memory, and is NULL on a GPU; the arrays marked + and ++ are what is known of the step
-/// before.
+/// zero, is not touched, takes no memory, and is NULL on a GPU; the arrays marked + and ++ are what is known of the
+/// step before.
 typedef struct scree_contact_list
 {
     int64_t num_contacts;

@@ -270,8 +270,8 @@ static scree_status take_memory(const search *s)
     int32_t *groups = scree_scratch_take(scratch, 2 * num_bodies, sizeof *groups);
     scree_pair_memory *memory = scree_scratch_take(scratch, batch->num, sizeof *memory);
     if (groups == NULL || memory == NULL) return SCREE_OUT_OF_MEMORY;
-    const scree_pair_groups kept = {b->first_kept, b->active, s->bodies.ids, 1, num_carried, groups,
-                                    groups + num_bodies};
+    const scree_pair_groups kept = {b->first_kept, b->active, s->bodies.ids,      1,
+                                    num_carried,   groups,    groups + num_bodies};
     scree_device_zero(device, groups, (size_t)num_bodies * 2 * sizeof *groups);
     scree_group_bounds_launch_on(device, kept, kept.num);
     scree_pair_carry_args args;

@@ -100,10 +100,10 @@ void scree_step_buffers_destroy(scree_simulation *simulation)
     scree_step_buffers *b = simulation->buffers;
     if (b == NULL) return;
     scree_device *device = b->device;
-    void *const arrays[] = {b->pose,        b->moving,      b->shape,          b->inverse_radius,    b->searched_pose,
-                            b->travel,      b->wall_axes,      b->broad_phase_walls, b->work_sums,
-                            b->load_sums,   b->old_groups,  b->old_of_contact, b->is_continued,      b->sides,
-                            b->wall_motion, b->board};
+    void *const arrays[] = {b->pose,          b->moving,    b->shape,       b->inverse_radius,
+                            b->searched_pose, b->travel,    b->wall_axes,   b->broad_phase_walls,
+                            b->work_sums,     b->load_sums, b->old_groups,  b->old_of_contact,
+                            b->is_continued,  b->sides,     b->wall_motion, b->board};
     for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; ++k) scree_device_free(device, arrays[k]);
     scree_places_destroy(&b->places, device);
     scree_forget_recordings(b);

@@ -80,7 +80,7 @@ def test_memory_is_that_of_the_plan(shape):
 
 def test_savings_change_the_work_and_not_the_contacts():
     cases = result_of("packing", "--shape", "schoenhardt", "--savings", *BED)["cases"]
-    assert len(cases) == 7
+    assert len(cases) == 8
     assert len({case["contacts"] for case in cases}) == 1
     assert all(case["times_as_long"] > 0 for case in cases[1:])
     by_name = {case["name"]: case for case in cases}

@@ -156,6 +156,7 @@ static void test_switches()
 {
     static const variant variants[] = {
         {"pairs anew", "", "", "reuse_pairs: false"},
+        {"places kept", "", "", "reorder_particles: false"},
         {"boxes only", "", "", "compare_spheres: false"},
         {"no planes", "", "", "find_separation: false"},
         {"nothing remembered", "", "", "remember_separation: false"},

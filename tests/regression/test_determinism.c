@@ -85,7 +85,8 @@ static void check_same_bits(const char *scene_text, const char *name)
 /// Each piece of work that is avoided, done after all; and skins of all widths.
 static void check_savings(const char *scene_text, const char *end)
 {
-    static const char *const keys[] = {"solver.compare_spheres=false",
+    static const char *const keys[] = {"solver.reorder_particles=false",
+                                       "solver.compare_spheres=false",
                                        "solver.find_separation=false",
                                        "solver.remember_separation=false",
                                        "solver.bound_separation=false",

@@ -11,42 +11,40 @@
 #include <omp.h>
 #include <unistd.h>
 
-#define HEAD                                                                                                  \
-    "materials:\n"                                                                                            \
-    "  - {name: stone, density: 2500, youngs_modulus: 1e7, poisson_ratio: 0.25}\n"                            \
-    "  - {name: steel, density: 7800, youngs_modulus: 1e8, poisson_ratio: 0.3}\n"                             \
-    "contact_laws:\n"                                                                                         \
-    "  - {materials: [stone, stone], friction_coefficient: 0.4, damping_ratio: 0.3}\n"                        \
-    "  - {materials: [stone, steel], friction_coefficient: 0.3, damping_ratio: 0.2}\n"                        \
-    "shapes:\n"                                                                                               \
-    "  - {name: ball, source: sphere, size: 0.016}\n"                                                         \
-    "  - {name: rock, source: rock, triangles: 40, seed: 3}\n"                                                \
-    "  - {name: schoenhardt, source: schoenhardt, size: 0.02}\n"                                              \
-    "  - {name: trio, source: clump, spheres: [{position: [0, 0, 0], radius: 0.007},\n"                       \
-    "     {position: [0.006, 0, 0], radius: 0.006}, {position: [0, 0.007, 0], radius: 0.005}]}\n"             \
-    "  - {name: floor, source: box, size: [0.3, 0.3, 0.02]}\n"                                                \
-    "  - {name: paddle, source: box, size: [0.06, 0.004, 0.016]}\n"                                           \
-    "walls:\n"                                                                                                \
-    "  - {name: floor, shape: floor, material: steel, position: [0, 0, -0.01],\n"                             \
-    "     motion: {kind: translate, velocity: [0, 0, 0.4], start: 0.002, end: 0.02}}\n"                       \
-    "  - {name: paddle, shape: paddle, material: steel, position: [0.02, 0, 0.009],\n"                        \
-    "     motion: {kind: rotate, axis: [0, 0, 1], centre: [0, 0, 0], angular_velocity: 40}}\n"                \
-    "  - {name: gate, shape: paddle, material: steel, position: [0, -0.05, 0.009], removed_at: 0.004}\n"      \
-    "fields: {measure: true, from: 0.001, period: 0.003, samples: 5, cells: [3, 3, 4],\n"                     \
-    "  region: {min: [-0.05, -0.05, 0], max: [0.05, 0.05, 0.1]}, energy_bins: 2, energy_min: 1e-7,\n"         \
+#define HEAD                                                                                             \
+    "materials:\n"                                                                                       \
+    "  - {name: stone, density: 2500, youngs_modulus: 1e7, poisson_ratio: 0.25}\n"                       \
+    "  - {name: steel, density: 7800, youngs_modulus: 1e8, poisson_ratio: 0.3}\n"                        \
+    "contact_laws:\n"                                                                                    \
+    "  - {materials: [stone, stone], friction_coefficient: 0.4, damping_ratio: 0.3}\n"                   \
+    "  - {materials: [stone, steel], friction_coefficient: 0.3, damping_ratio: 0.2}\n"                   \
+    "shapes:\n"                                                                                          \
+    "  - {name: ball, source: sphere, size: 0.016}\n"                                                    \
+    "  - {name: rock, source: rock, triangles: 40, seed: 3}\n"                                           \
+    "  - {name: schoenhardt, source: schoenhardt, size: 0.02}\n"                                         \
+    "  - {name: trio, source: clump, spheres: [{position: [0, 0, 0], radius: 0.007},\n"                  \
+    "     {position: [0.006, 0, 0], radius: 0.006}, {position: [0, 0.007, 0], radius: 0.005}]}\n"        \
+    "  - {name: floor, source: box, size: [0.3, 0.3, 0.02]}\n"                                           \
+    "  - {name: paddle, source: box, size: [0.06, 0.004, 0.016]}\n"                                      \
+    "walls:\n"                                                                                           \
+    "  - {name: floor, shape: floor, material: steel, position: [0, 0, -0.01],\n"                        \
+    "     motion: {kind: translate, velocity: [0, 0, 0.4], start: 0.002, end: 0.02}}\n"                  \
+    "  - {name: paddle, shape: paddle, material: steel, position: [0.02, 0, 0.009],\n"                   \
+    "     motion: {kind: rotate, axis: [0, 0, 1], centre: [0, 0, 0], angular_velocity: 40}}\n"           \
+    "  - {name: gate, shape: paddle, material: steel, position: [0, -0.05, 0.009], removed_at: 0.004}\n" \
+    "fields: {measure: true, from: 0.001, period: 0.003, samples: 5, cells: [3, 3, 4],\n"                \
+    "  region: {min: [-0.05, -0.05, 0], max: [0.05, 0.05, 0.1]}, energy_bins: 2, energy_min: 1e-7,\n"    \
     "  energy_max: 1e-3}\n"
 
 /// All contacts act in points.
 static const char spheres_text[] =
-    "name: spheres\ntime: {end: 0.012, step: 5e-5}\n" HEAD
-    "particles:\n"
+    "name: spheres\ntime: {end: 0.012, step: 5e-5}\n" HEAD "particles:\n"
     "  - {name: balls, shape: ball, material: stone, count: 170, seed: 4, velocity: [0, 0, -4], spacing: 1.02,\n"
     "     size: {distribution: uniform, min: 0.008, max: 0.012},\n"
     "     region: {min: [-0.05, -0.05, 0.018], max: [0.05, 0.05, 0.3]}}\n";
 
 static const char mixed_text[] =
-    "name: mixed\ntime: {end: 0.012, step: 5e-5}\n" HEAD
-    "particles:\n"
+    "name: mixed\ntime: {end: 0.012, step: 5e-5}\n" HEAD "particles:\n"
     "  - {name: trios, shape: trio, material: stone, count: 8, seed: 5, velocity: [0, 0, -16],\n"
     "     region: {min: [-0.03, -0.03, 0.25], max: [0.03, 0.03, 0.4]}}\n"
     "  - {name: rocks, shape: rock, material: stone, count: 12, seed: 1, velocity: [0, 0, -4], spacing: 1,\n"
@@ -79,7 +77,10 @@ static void shuffle(scree_simulation *s, uint64_t *state)
     SCREE_CHECK_INT(scree_ask_for_places(s, order), SCREE_OK);
 }
 
-static bool are_same(const void *a, const void *b, int64_t num, size_t size) { return memcmp(a, b, (size_t)num * size) == 0; }
+static bool are_same(const void *a, const void *b, int64_t num, size_t size)
+{
+    return memcmp(a, b, (size_t)num * size) == 0;
+}
 
 /// Everything that can be asked of the two is the same.
 static void check_same(scree_simulation *a, scree_simulation *b)
@@ -108,8 +109,8 @@ static void check_same(scree_simulation *a, scree_simulation *b)
     SCREE_CHECK_INT(p->num_periods, q->num_periods);
     SCREE_CHECK(are_same(p->grid_total.momentum, q->grid_total.momentum, 3 * p->grid.num_cells, sizeof(double)));
     SCREE_CHECK(are_same(p->spectrum.energy_normal, q->spectrum.energy_normal, p->spectrum.num_rows, sizeof(double)) &&
-                are_same(p->spectrum_total.energy_tangential, q->spectrum_total.energy_tangential,
-                         p->spectrum.num_rows, sizeof(double)) &&
+                are_same(p->spectrum_total.energy_tangential, q->spectrum_total.energy_tangential, p->spectrum.num_rows,
+                         sizeof(double)) &&
                 are_same(p->spectrum_total.count_normal, q->spectrum_total.count_normal, p->spectrum.num_rows,
                          sizeof(int64_t)));
     SCREE_CHECK(are_same(p->collisions.normal, q->collisions.normal, n, sizeof(double)));
@@ -228,8 +229,7 @@ static void mix(scree_simulation *s, uint64_t *state)
 }
 
 static const char block_text[] =
-    "name: block\ntime: {end: 1, step: 2e-5}\n" HEAD
-    "particles:\n"
+    "name: block\ntime: {end: 1, step: 2e-5}\n" HEAD "particles:\n"
     "  - {name: balls, shape: ball, material: stone, count: 3000, seed: 4, velocity: [0, 0, -1], spacing: 1,\n"
     "     size: {distribution: fixed, mean: 0.008},\n"
     "     region: {min: [-0.12, -0.12, 0.02], max: [0.12, 0.12, 0.6]}}\n";

@@ -172,7 +172,7 @@ static void count_ended(scree_simulation *simulation, scree_simulation *there)
     scree_device *device = there->device;
     scree_ended_collisions_args args;
     args.bodies = there->old_contacts.bodies;
-    args.patch = there->old_contacts.patch;
+    args.patch = there->old_contacts.is_one_per_pair ? NULL : there->old_contacts.patch;
     args.ids = scree_ids(there);
     args.is_continued = there->buffers->is_continued;
     args.normal = old->normal;

@@ -171,6 +171,7 @@ static scree_status sort_contacts(scree_simulation *s)
 scree_status scree_bring_home(scree_simulation *simulation)
 {
     scree_step_buffers *b = simulation->buffers;
+    if (b == NULL) return SCREE_OK; // nothing has been stepped
     scree_places *p = &b->places;
     if (simulation->step > p->looked_step) p->has_short_stay = simulation->step - p->looked_step < SHORT_STAY;
     p->looked_step = simulation->step;

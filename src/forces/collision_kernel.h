@@ -45,7 +45,7 @@ typedef struct scree_ended_collision
 typedef struct scree_ended_collisions_args
 {
     const scree_candidate_pair *bodies; ///< (num_old)
-    const int32_t *patch;               ///< (num_old)
+    const int32_t *patch;               ///< (num_old), or NULL: 0
     const int32_t *ids;                 ///< (num_bodies) of the bodies, or NULL: each is its own
     const uint8_t *is_continued;        ///< (num_old)
     const double *normal;               ///< [J] (num_old)
@@ -68,7 +68,7 @@ SCREE_FN void scree_ended_collisions_at(scree_ended_collisions_args a, int64_t o
     collision.tangential = a.tangential[o];
     collision.first = a.ids ? a.ids[pair.i] : pair.i;
     collision.second = a.ids ? a.ids[pair.j] : pair.j;
-    collision.patch = a.patch[o];
+    collision.patch = a.patch ? a.patch[o] : 0;
     collision.is_with_wall = pair.j >= a.num_particles ? 1 : 0;
     a.ended[a.places[o]] = collision;
 }

@@ -56,8 +56,9 @@ extern "C"
     /// are those of the last scree_simulation_observe(). Refused with a message: SCREE_OUT_OF_MEMORY if the scene does
     /// not fit there, SCREE_DEVICE_FAILED, SCREE_INVALID_INPUT for the CPU or a second call.
     scree_status scree_simulation_use_device(scree_simulation *simulation, scree_device *device, scree_report *report);
-    /// Brings particles and contacts up to date with the GPU that steps are done on; nothing on the CPU. Call before
-    /// anything is written or asked but time and counters. SCREE_DEVICE_FAILED, SCREE_OUT_OF_MEMORY.
+    /// Particles and contacts to the order of ids, where steps may have left it, and up to date with the GPU that steps
+    /// are done on. Call before anything is written or asked but time and counters; on the CPU energies are right
+    /// without it, up to the rounding of their sums. SCREE_DEVICE_FAILED, SCREE_OUT_OF_MEMORY.
     scree_status scree_simulation_observe(scree_simulation *simulation, scree_report *report);
 
     /// Stages of a step, in their order.

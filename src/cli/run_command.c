@@ -206,7 +206,8 @@ static void show_progress(run_state *run)
     run->shown_clock = now;
     run->shown_step = step;
 
-    if (!run->is_lost) scree_simulation_observe(run->simulation, &run->report);
+    // on the CPU a look would bring particles home that have changed places, and these digits do not need that
+    if (!run->is_lost && run->device != NULL) scree_simulation_observe(run->simulation, &run->report);
     const scree_energies energies = scree_simulation_energies(simulation);
     const double share = num_steps > 0 ? (double)step / (double)num_steps : 1;
     char left[32], bar[21];

@@ -1,5 +1,6 @@
 /// \file contact_list.h
-/// The contacts of the present step in SoA form, sorted by (i, j, patch), with the history that follows each of them.
+/// The contacts of the present step in SoA form, sorted by the place of i, the id of j and patch, with the history that
+/// follows each of them.
 #ifndef SCREE_CONTACT_LIST_H
 #define SCREE_CONTACT_LIST_H
 

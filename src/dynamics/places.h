@@ -7,6 +7,7 @@
 #ifndef SCREE_PLACES_H
 #define SCREE_PLACES_H
 
+#include "core/scan.h"
 #include "dynamics/state.h"
 
 /// All arrays lie where the simulation's do, and are NULL until bodies change places for the first time.
@@ -25,6 +26,7 @@ typedef struct scree_places
     int32_t *spare_ids;  ///< (num_bodies)
     int64_t *num_far;    ///< counts
     void *scratch;       ///< (num_bodies) poses
+    scree_scan_scratch scan;
 } scree_places;
 
 void scree_places_start(scree_simulation *simulation);
@@ -38,11 +40,13 @@ const int32_t *scree_places_of_ids(const scree_simulation *simulation);
 /// At the next search, before the next step, the particle in place order[k] comes to place k. `order` (num_particles)
 /// lies where the arrays do. SCREE_OUT_OF_MEMORY.
 scree_status scree_ask_for_places(scree_simulation *simulation, const int32_t *order);
-/// After the search of `input`: is it time to change places? Then the next step searches again. SCREE_OUT_OF_MEMORY.
-scree_status scree_compare_places(scree_simulation *simulation, const scree_broad_phase_input *input);
+/// After the search of `input`: is it time to change places? Then the next step searches again. Without memory for it
+/// particles stay.
+void scree_compare_places(scree_simulation *simulation, const scree_broad_phase_input *input);
 /// Before a search: particles change places if it is time. What is known of pairs and contacts follows them.
 void scree_change_places(scree_simulation *simulation);
-/// All bodies to the places of their ids, contacts in the order of ids; the next step searches. SCREE_OUT_OF_MEMORY.
+/// Between steps: all bodies to the places of their ids, contacts in the order of ids; then the next step searches.
+/// SCREE_OUT_OF_MEMORY leaves everything as it was.
 scree_status scree_bring_home(scree_simulation *simulation);
 
 #endif

@@ -15,11 +15,12 @@ typedef struct scree_far_followers_args
 {
     const scree_vec3 *centres; ///< [m] (num_particles)
     const scree_real *radii;   ///< [m] (num_particles)
+    const int32_t *order;      ///< (num_particles) in which they follow each other, or NULL: as they lie in memory
     int64_t num_particles;
     int64_t *num_far; ///< counts
 } scree_far_followers_args;
 
-/// Of block b of particles, those which the next one in memory is far from in space.
+/// Of block b of particles, those which the next one is far from in space.
 SCREE_FN void scree_far_followers_at(scree_far_followers_args a, int64_t b)
 {
     const int64_t begin = b * SCREE_FAR_BLOCK, last = a.num_particles - 1;
@@ -27,8 +28,9 @@ SCREE_FN void scree_far_followers_at(scree_far_followers_args a, int64_t b)
     int64_t num = 0;
     for (int64_t k = begin; k < end; ++k)
     {
-        const scree_vec3 between = scree_vec3_sub(a.centres[k + 1], a.centres[k]);
-        const scree_real near = SCREE_NEAR_DIAMETERS * (a.radii[k] + a.radii[k + 1]);
+        const int64_t i = a.order ? a.order[k] : k, next = a.order ? a.order[k + 1] : k + 1;
+        const scree_vec3 between = scree_vec3_sub(a.centres[next], a.centres[i]);
+        const scree_real near = SCREE_NEAR_DIAMETERS * (a.radii[i] + a.radii[next]);
         num += scree_vec3_dot(between, between) > near * near ? 1 : 0;
     }
     if (num > 0) scree_atomic_count(a.num_far, num);
@@ -81,7 +83,7 @@ typedef struct scree_sort_groups_args
 {
     const int32_t *begin; ///< (num_bodies) first contact of each first body
     const int32_t *end;   ///< (num_bodies) the contact behind its last one
-    int32_t *first;       ///< (num_bodies + 1) how many there are, then their sums: where they come to stand
+    int32_t *first;       ///< (num_bodies) how many there are, then their sums: where they come to stand
     int32_t *order;       ///< (num_contacts) out: which contact comes to each place
 } scree_sort_groups_args;
 

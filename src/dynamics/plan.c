@@ -23,7 +23,9 @@ scree_plan_bytes scree_simulation_plan_bytes(const scree_simulation *simulation)
     const size_t tree =
         2 * sizeof(scree_lbvh_node) + 3 * sizeof(int32_t) + 1 + 2 * (sizeof(uint64_t) + sizeof(int32_t));
     const size_t rows = 4 * sizeof(int32_t) + sizeof(int64_t);
-    bytes.search = body + rows;
+    const scree_places *places = &s->buffers->places;
+    const bool may_move = !places->are_kept && s->particles.num_particles > places->few;
+    bytes.search = body + rows + (may_move ? 5 * sizeof(int32_t) + sizeof(scree_pose) : 0);
     bytes.search_scratch = sizeof(scree_box) + sizeof(scree_vec3) + sizeof(scree_real) + tree;
     // ids, rows, batch unless there is but one, first contact now and in the step before
     const bool is_all = has_meshes + has_spheres + has[SCREE_KIND_CLUMP] == 1 && (has_meshes || s->num_walls == 0);

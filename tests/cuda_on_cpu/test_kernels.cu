@@ -415,8 +415,12 @@ static void test_places()
             where.keep((const uint8_t *)bytes.to, num_bodies);
 
             scree_far_followers_args far = {where.copy(centres.data(), num_particles),
-                                            where.copy(radii.data(), num_particles), num_particles,
+                                            where.copy(radii.data(), num_particles), NULL, num_particles,
                                             where.zeros<int64_t>(1)};
+            LAUNCH_ON(where, scree_far_followers, far, (num_particles + SCREE_FAR_BLOCK - 1) / SCREE_FAR_BLOCK);
+            where.keep(far.num_far, 1);
+            far.order = places.order;
+            far.num_far = where.zeros<int64_t>(1);
             LAUNCH_ON(where, scree_far_followers, far, (num_particles + SCREE_FAR_BLOCK - 1) / SCREE_FAR_BLOCK);
             where.keep(far.num_far, 1);
 

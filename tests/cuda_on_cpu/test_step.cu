@@ -389,6 +389,51 @@ static void test_memory_ends()
     printf("%lld refused, %lld broken off\n", (long long)num_refused, (long long)num_broken);
     SCREE_CHECK(num_refused > 10 && num_broken > 10);
 }
+
+/// Where there is no memory for other places particles stay, and change places once there is. Coming home takes none.
+static void test_no_memory_for_places()
+{
+    std::string text = std::string("name: tower\ntime: {end: 0.012, step: 1e-5}\n") + head +
+                       "shapes:\n  - {name: ball, source: sphere, size: 0.016}\n" + wall_shapes +
+                       "particles:\n  - name: bodies\n    shape: ball\n    material: stone\n    bodies:\n";
+    for (int k = 0; k < 200; ++k)
+    {
+        char body[96];
+        snprintf(body, sizeof body, "      - {size: 0.016, position: [0, 0, %g]}\n", 0.008 + 0.0159 * (k * 37 % 200));
+        text += body;
+    }
+    text += "walls:\n  - {name: floor, shape: floor, material: steel, position: [0, 0, -0.01]}\n";
+    scene_run here, run;
+    scene_run_start(&here, text.c_str());
+    scene_run_start(&run, text.c_str());
+    scree_device *device = open_device(128, true, 0);
+    move(run.simulation, device);
+    scree_step_buffers *b = run.simulation->there->buffers;
+    const auto search = [&](int num_steps)
+    {
+        for (int k = 0; k < num_steps; ++k)
+        {
+            b->is_search_asked = true;
+            steps(run.simulation, 1);
+            steps(here.simulation, 1);
+        }
+    };
+    search(3);
+    b->places.few = 100;
+    cuda_on_cpu::allow_allocations(0);
+    search(3);
+    SCREE_CHECK(b->places.are_ids && !b->places.is_due);
+    cuda_on_cpu::allow_allocations(-1);
+    search(2);
+    SCREE_CHECK(!b->places.are_ids);
+    cuda_on_cpu::allow_allocations(0);
+    check_same(here.simulation, run.simulation);
+    SCREE_CHECK(b->places.are_ids && here.simulation->contacts.num_contacts >= 199);
+    cuda_on_cpu::allow_allocations(-1);
+    scene_run_end(&run);
+    scree_device_close(device);
+    scene_run_end(&here);
+}
 #endif
 
 int main()
@@ -407,6 +452,7 @@ int main()
     SCREE_RUN(test_memory_up_front);
     SCREE_RUN(test_memory_is_taken_at_searches);
     SCREE_RUN(test_memory_ends);
+    SCREE_RUN(test_no_memory_for_places);
 #endif
     return SCREE_TEST_END();
 }

@@ -63,7 +63,7 @@ KERNELS = [
     ("scree_work", "contact", "src/forces/work_kernel.h",
      dict(own="bodies:pair arm:vec3 normal:vec3 elastic_force:real normal_force:vec3 tangential_force:vec3 moment:vec3 "
               "elastic_work:real spring_work:real is_slipping:uint8 is_turning:uint8 tangential_stiffness:real",
-          near="pose:pose moving:moving inertia:vec3",
+          near="own_begin:int32 first_of_pair:int32 pose:pose moving:moving inertia:vec3",
           far="pose:pose moving:moving inertia:vec3"), 456),
 ]
 
@@ -104,7 +104,8 @@ SEARCH_KERNELS = [
     ("scree_particle_pairs, per candidate", "pair", "src/bvh/broad_phase_kernel.h", dict(own="keys:int64"), None),
     ("sort of pairs", "pair", None, dict(own="keys:int64*17"), None),
     ("scree_pair_unpack", "pair", "src/bvh/broad_phase_kernel.h",
-     dict(own="keys:int64 pairs:pair second_keys:int64", near="first_as_i:int32"), 36),
+     dict(own="keys:int64 pairs:pair", near="first_as_i:int32"), 36),
+    ("scree_pair_second_keys", "pair", "src/bvh/broad_phase_kernel.h", dict(own="pairs:pair second_keys:int64"), None),
     ("sort by second body", "pair", None, dict(own="second_keys:int64*9"), None),
     ("scree_pair_second_begin", "pair", "src/bvh/broad_phase_kernel.h", dict(own="second_keys:int64", near="first_as_j:int32"), 17),
     ("scree_pair_row_begin", "particle", "src/bvh/broad_phase_kernel.h",

@@ -46,10 +46,12 @@ static scree_vec3 unit_from(const double v[3])
     return scree_vec3_make((scree_real)(v[0] / length), (scree_real)(v[1] / length), (scree_real)(v[2] / length));
 }
 
-static scree_wall_axis axis_of(const scree_wall_def *def)
+/// Of the wall that is number `body` among all bodies.
+static scree_wall_axis axis_of(const scree_wall_def *def, int64_t body)
 {
     const scree_motion_def *motion = &def->motion;
     scree_wall_axis axis;
+    axis.body = (int32_t)body;
     axis.is_rotating = motion->kind == SCREE_MOTION_ROTATE;
     axis.direction = unit_from(axis.is_rotating ? motion->axis : motion->velocity);
     axis.centre =
@@ -141,8 +143,7 @@ scree_status scree_wall_axes_create(scree_simulation *simulation)
         const scree_wall_def *def = simulation->scene->walls + w;
         b->moving_wall_here[w] = -1;
         if (def->motion.kind == SCREE_MOTION_FIXED) continue;
-        b->wall_axes_here[b->num_moving_walls] = axis_of(def);
-        b->wall_axes_here[b->num_moving_walls].body = (int32_t)simulation->particles.num_particles + w;
+        b->wall_axes_here[b->num_moving_walls] = axis_of(def, simulation->particles.num_particles + w);
         b->moving_wall_here[w] = b->num_moving_walls++;
     }
     scree_device_write(simulation->device, b->wall_axes, b->wall_axes_here, (size_t)num * sizeof *b->wall_axes);

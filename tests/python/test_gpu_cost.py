@@ -36,6 +36,7 @@ def test_arrays_of_the_source_are_in_the_model(source):
     # one per 256 contacts and in all, area and torque vectors are for one force law, shapes for gaps that are used up and where pairs are told apart by their work, rolling moments for rolling resistance
     elsewhere = {"batch", "walls", "chunk_bounds", "pairs", "patch", "arm", "old_patch", "old_arm", "old_bodies", "sums",
                  "area_vector", "torque_vector", "kept_levers", "shape", "shapes", "rolling_moment", "slices", "laws"}
+    elsewhere |= {"ids", "places", "own_before"}  # of particles that have changed places
     if source.endswith("gather_kernel.h"):
         elsewhere |= {"bodies", "normal_force", "tangential_force", "moment", "pose"}  # only where the forces leave no sides: on the CPU
     if source.endswith("pair_groups_kernel.h"):

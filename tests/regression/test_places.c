@@ -147,6 +147,8 @@ static void check_shuffled(const char *text, int shuffle_every, const char *solv
     printf("%s, %s: up to %lld contacts, %lld collisions counted, away from home in %lld steps\n",
            still.file.scene.name, solver != NULL ? solver : "", (long long)most_contacts, (long long)num_ended,
            (long long)num_away);
+    printf("hash %s_%d %016llx\n", still.file.scene.name, shuffle_every,
+           (unsigned long long)scree_simulation_hash(moving.simulation));
     SCREE_CHECK(most_contacts > 40 && num_ended > 40 && num_away > NUM_STEPS / 3);
     scene_run_end(&moving);
     scene_run_end(&still);

@@ -23,8 +23,8 @@ SCREE_DEFINE_LAUNCH_LIVE(scree_contact_force)
 SCREE_DEFINE_LAUNCH(scree_gather)
 SCREE_DEFINE_LAUNCH(scree_collision)
 SCREE_DEFINE_LAUNCH(scree_wall_load)
-// four blocks at a time: with five it would need a stack on 12.0
-SCREE_DEFINE_LAUNCH_OF_TEAMS(scree_work, SCREE_AS_RECORDED, SCREE_SUM_LANES, SCREE_CUDA_BLOCK, 4)
+// three blocks at a time: with four it would need a stack on 12.0
+SCREE_DEFINE_LAUNCH_OF_TEAMS(scree_work, SCREE_AS_RECORDED, SCREE_SUM_LANES, SCREE_CUDA_BLOCK, 3)
 SCREE_DEFINE_SUM_LAUNCH(scree_work_reduce)
 SCREE_DEFINE_SUM_LAUNCH(scree_wall_load_reduce)
 SCREE_DEFINE_SUM_LAUNCH_LIVE(scree_indentations)

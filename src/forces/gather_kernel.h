@@ -1,5 +1,5 @@
 /// \file gather_kernel.h
-/// Force and torque of particle i: the sum over its row of contacts in ascending order, so without atomics and the same
+/// Force and torque of particle i: the sum over its row of contacts by the other ids, so without atomics and the same
 /// for any number of threads.
 #ifndef SCREE_GATHER_KERNEL_H
 #define SCREE_GATHER_KERNEL_H

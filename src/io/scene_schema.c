@@ -551,7 +551,8 @@ static const scree_scene_key fields_keys[] = {
      .default_text = "200",
      .min = 1,
      .max = 1e6,
-     .meaning = "looks at the particles in a period, at equal distances"},
+     .meaning = "looks at the particles in a period, at equal distances; particles that have mixed change places in "
+                "memory only if there are a hundred steps between two of them"},
     {.name = "energy_bins",
      .unit = "1",
      .default_text = "0",

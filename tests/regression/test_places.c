@@ -1,6 +1,7 @@
 // Where particles lie in memory changes no bit: runs in which they change places again and again, at random, are those
 // in which they stay; whoever looks finds ids. And particles that are mixed do change places.
 #include "scene_run.h"
+#include "test_folder.h"
 
 #include "dynamics/places.h"
 #include "dynamics/step_buffers.h"
@@ -167,10 +168,8 @@ static void test_places_change_no_bit(void)
 /// A run that is shuffled, saved, loaded and shuffled again is the unbroken one that stays.
 static void test_places_and_checkpoints(void)
 {
-    char folder[] = "/tmp/scree_test_places_XXXXXX";
-    SCREE_CHECK(mkdtemp(folder) != NULL);
-    char path[64];
-    snprintf(path, sizeof path, "%s/checkpoint.h5", folder);
+    char path[500];
+    snprintf(path, sizeof path, "%s/checkpoint.h5", scree_test_folder());
     scene_run still, moving;
     scene_run_start(&still, mixed_text);
     uint64_t state = 9;
@@ -198,7 +197,6 @@ static void test_places_and_checkpoints(void)
         scene_run_end(&moving);
     }
     scene_run_end(&still);
-    SCREE_CHECK(remove(path) == 0 && remove(folder) == 0);
 }
 
 /// Who has left the range of numbers is told by his id.

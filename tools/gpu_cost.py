@@ -53,8 +53,8 @@ KERNELS = [
           near="pose:start moving:moving",
           far="pose:start moving:moving"), 589),
     ("scree_gather", "particle", "src/forces/gather_kernel.h",
-     dict(own="row_begin:int64 own_begin:int32 mass:real force:vec3 torque:vec3", far="first_of_pair:int32"), 59),
-    # a row holds all candidates, touching or not; where a particle is the first body its contacts stand next to each other
+     dict(own="row_begin:int32 own_begin:int32 mass:real force:vec3 torque:vec3", far="first_of_pair:int32"), 59),
+    # a row holds all candidates of a second body, touching or not; where a particle is the first one its contacts stand next to each other
     ("scree_gather, per candidate", "pair", "src/forces/gather_kernel.h", dict(own="row_pairs:int32", far="first_of_pair:int32"), 10),
     ("scree_gather, per contact", "contact", "src/forces/gather_kernel.h", dict(own="sides:side", far="sides:side"), 84),
     ("scree_correct", "particle", "src/dynamics/integrator_kernel.h",
@@ -104,14 +104,10 @@ SEARCH_KERNELS = [
     ("scree_particle_pairs, per candidate", "pair", "src/bvh/broad_phase_kernel.h", dict(own="keys:int64"), None),
     ("sort of pairs", "pair", None, dict(own="keys:int64*17"), None),
     ("scree_pair_unpack", "pair", "src/bvh/broad_phase_kernel.h",
-     dict(own="keys:int64 pairs:pair", near="first_as_i:int32"), 36),
+     dict(own="keys:int64 pairs:pair", near="own_begin:int32"), 36),
     ("scree_pair_second_keys", "pair", "src/bvh/broad_phase_kernel.h", dict(own="pairs:pair second_keys:int64"), None),
     ("sort by second body", "pair", None, dict(own="second_keys:int64*9"), None),
-    ("scree_pair_second_begin", "pair", "src/bvh/broad_phase_kernel.h", dict(own="second_keys:int64", near="first_as_j:int32"), 17),
-    ("scree_pair_row_begin", "particle", "src/bvh/broad_phase_kernel.h",
-     dict(own="first_as_i:int32 first_as_j:int32 row_begin:int64"), 10),
-    ("scree_pair_rows", "pair", "src/bvh/broad_phase_kernel.h",
-     dict(own="second_keys:int64 pairs:pair row_pairs:int32*2", near="row_begin:int64*2 first_as_i:int32 first_as_j:int32"), 23),
+    ("scree_pair_rows", "pair", "src/bvh/broad_phase_kernel.h", dict(own="second_keys:int64 row_pairs:int32", near="row_begin:int32"), 20),
     ("copies of poses", "particle", None, dict(own="pose:pose*4 travel:real"), None),
     # once for each of four kinds of pairs
     ("scree_pair_flag", "pair", "src/contact/pair_kinds_kernel.h",

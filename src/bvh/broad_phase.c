@@ -21,8 +21,7 @@ struct scree_broad_phase_buffers
     scree_sort_buffers sort; ///< keys of pairs
     scree_scan_scratch scan; ///< of own pairs
     int64_t max_keys;
-    int64_t *num_keys;   ///< counts the pairs of a search
-    int32_t *first_as_j; ///< (max_bodies + 1); before, own pairs
+    int64_t *num_keys; ///< counts the pairs of a search
     int64_t max_pairs;
     int64_t max_bodies;
     int64_t num_bodies; ///< of the last search
@@ -38,7 +37,6 @@ void scree_broad_phase_destroy(scree_broad_phase *broad_phase)
         scree_scan_destroy(&broad_phase->buffers->scan);
         scree_device_free(device, broad_phase->buffers->num_keys);
         scree_device_free(device, broad_phase->own_begin);
-        scree_device_free(device, broad_phase->buffers->first_as_j);
         free(broad_phase->buffers);
     }
     scree_device_free(device, broad_phase->pairs);
@@ -71,24 +69,28 @@ static scree_status reserve_bodies(scree_broad_phase *broad_phase, int64_t num_b
     if (num_bodies <= b->max_bodies && broad_phase->row_begin != NULL) return SCREE_OK;
     const int64_t max_bodies = scree_buffer_grown(num_bodies);
     int32_t *own_begin = scree_device_alloc(device, max_bodies + 1, sizeof *own_begin);
-    int32_t *first_as_j = scree_device_alloc(device, max_bodies + 1, sizeof *first_as_j);
-    int64_t *row_begin = scree_device_alloc(device, max_bodies + 1, sizeof *row_begin);
-    if (own_begin == NULL || first_as_j == NULL || row_begin == NULL)
+    int32_t *row_begin = scree_device_alloc(device, max_bodies + 1, sizeof *row_begin);
+    if (own_begin == NULL || row_begin == NULL)
     {
         scree_device_free(device, own_begin);
-        scree_device_free(device, first_as_j);
         scree_device_free(device, row_begin);
         return SCREE_OUT_OF_MEMORY;
     }
     // the rows of the last search stay readable until this one is complete
     const size_t num_bytes = (size_t)(b->num_bodies + 1) * sizeof *row_begin;
-    if (broad_phase->row_begin != NULL) scree_device_copy(device, row_begin, broad_phase->row_begin, num_bytes);
-    else scree_device_zero(device, row_begin, num_bytes);
+    if (broad_phase->row_begin != NULL)
+    {
+        scree_device_copy(device, own_begin, broad_phase->own_begin, num_bytes);
+        scree_device_copy(device, row_begin, broad_phase->row_begin, num_bytes);
+    }
+    else
+    {
+        scree_device_zero(device, own_begin, num_bytes);
+        scree_device_zero(device, row_begin, num_bytes);
+    }
     scree_device_free(device, broad_phase->own_begin);
-    scree_device_free(device, b->first_as_j);
     scree_device_free(device, broad_phase->row_begin);
     broad_phase->own_begin = own_begin;
-    b->first_as_j = first_as_j;
     broad_phase->row_begin = row_begin;
     b->max_bodies = max_bodies;
     return SCREE_OK;
@@ -102,7 +104,7 @@ static scree_status reserve_pairs(scree_broad_phase *broad_phase, int64_t num_pa
     if (num_pairs <= b->max_pairs) return SCREE_OK;
     const int64_t max_pairs = scree_buffer_grown(num_pairs);
     scree_candidate_pair *pairs = scree_device_alloc(device, max_pairs, sizeof *pairs);
-    int32_t *row_pairs = scree_device_alloc(device, 2 * max_pairs, sizeof *row_pairs);
+    int32_t *row_pairs = scree_device_alloc(device, max_pairs, sizeof *row_pairs);
     if (pairs == NULL || row_pairs == NULL)
     {
         scree_device_free(device, pairs);
@@ -150,8 +152,8 @@ static void fill_pairs(struct scree_broad_phase_buffers *b, scree_device *device
 {
     if (args.num_pairs == 0)
     {
-        scree_device_zero(device, args.first_as_i, (size_t)(args.num_bodies + 1) * sizeof *args.first_as_i);
-        scree_device_zero(device, args.first_as_j, (size_t)(args.num_bodies + 1) * sizeof *args.first_as_j);
+        scree_device_zero(device, args.own_begin, (size_t)(args.num_bodies + 1) * sizeof *args.own_begin);
+        scree_device_zero(device, args.row_begin, (size_t)(args.num_bodies + 1) * sizeof *args.row_begin);
     }
     scree_pair_unpack_launch_on(device, args, args.num_pairs);
     if (args.ids != NULL)
@@ -171,9 +173,8 @@ static void fill_pairs_and_rows(scree_broad_phase *broad_phase, const scree_broa
     scree_pair_rows_args args = {.keys = b->sort.keys,
                                  .second_keys = b->sort.spare_keys,
                                  .pairs = broad_phase->pairs,
-                                 .first_as_i = broad_phase->own_begin,
-                                 .first_as_j = b->first_as_j,
-                                 .own_before = b->first_as_j,
+                                 .own_begin = broad_phase->own_begin,
+                                 .own_before = broad_phase->row_begin, // it is filled afterwards
                                  .row_begin = broad_phase->row_begin,
                                  .row_pairs = broad_phase->row_pairs,
                                  .ids = input->ids,
@@ -189,8 +190,6 @@ static void fill_pairs_and_rows(scree_broad_phase *broad_phase, const scree_broa
     b->sort.spare_keys = keys;
     scree_sort(&b->sort, num_pairs, 32);
     args.second_keys = b->sort.keys;
-    scree_pair_second_begin_launch_on(device, args, num_pairs);
-    scree_pair_row_begin_launch_on(device, args, num_bodies + 1);
     scree_pair_rows_launch_on(device, args, num_pairs);
     broad_phase->num_pairs = num_pairs;
     b->num_bodies = num_bodies;
@@ -244,11 +243,11 @@ static bool check_order(const scree_broad_phase *broad_phase, const scree_broad_
     return true;
 }
 
-/// Each row ascends and holds pairs of its body alone; as many entries as two for each pair make them complete.
+/// Each row ascends and holds pairs of its body alone; as many entries as pairs make them complete.
 static bool check_rows(const scree_broad_phase *broad_phase, int64_t num_bodies, scree_report *report)
 {
-    const int64_t *begin = broad_phase->row_begin;
-    if (begin[0] != 0 || begin[num_bodies] != 2 * broad_phase->num_pairs)
+    const int32_t *begin = broad_phase->row_begin;
+    if (begin[0] != 0 || begin[num_bodies] != broad_phase->num_pairs)
     {
         scree_report_add(report, "rows of candidate pairs: from %lld to %lld for %lld pairs", (long long)begin[0],
                          (long long)begin[num_bodies], (long long)broad_phase->num_pairs);
@@ -260,8 +259,7 @@ static bool check_rows(const scree_broad_phase *broad_phase, int64_t num_bodies,
         for (int64_t k = begin[body]; k < begin[body + 1] && is_valid; ++k)
         {
             const int64_t p = broad_phase->row_pairs[k], before = k > begin[body] ? broad_phase->row_pairs[k - 1] : -1;
-            is_valid = p > before && p < broad_phase->num_pairs &&
-                       (broad_phase->pairs[p].i == body || broad_phase->pairs[p].j == body);
+            is_valid = p > before && p < broad_phase->num_pairs && broad_phase->pairs[p].j == body;
         }
         if (is_valid) continue;
         scree_report_add(report, "row of body %lld: not ascending, or with a pair of other bodies", (long long)body);

@@ -42,9 +42,9 @@ typedef struct scree_broad_phase
     scree_lbvh tree;
     scree_candidate_pair *pairs; ///< (num_pairs) sorted by the place of i, then the id of j, each once
     int64_t num_pairs;
-    int64_t *row_begin;                        ///< (num_bodies + 1) start of each body's row in row_pairs
-    int32_t *row_pairs;                        ///< (2 num_pairs) for each body its pairs, by the id of the other one
-    int32_t *own_begin;                        ///< (num_bodies + 1) first pair in which a body is the first one
+    int32_t *own_begin; ///< (num_bodies + 1) first pair in which a body is the first one
+    int32_t *row_begin; ///< (num_bodies + 1) start of each body's row in row_pairs
+    int32_t *row_pairs; ///< (num_pairs) pairs in which a body is the second one, by the first's id
     struct scree_broad_phase_buffers *buffers; ///< internal
 } scree_broad_phase;
 

@@ -10,8 +10,6 @@ SCREE_DEFINE_LAUNCH_DYNAMIC(scree_wall_pairs)
 SCREE_DEFINE_LAUNCH(scree_pair_unpack)
 SCREE_DEFINE_LAUNCH(scree_pair_own)
 SCREE_DEFINE_LAUNCH(scree_pair_second_keys)
-SCREE_DEFINE_LAUNCH(scree_pair_second_begin)
-SCREE_DEFINE_LAUNCH(scree_pair_row_begin)
 SCREE_DEFINE_LAUNCH(scree_pair_rows)
 
 enum

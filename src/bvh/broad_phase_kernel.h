@@ -158,18 +158,17 @@ SCREE_FN void scree_wall_pairs_at(scree_wall_pairs_args a, int64_t block)
     scree_pair_batch_append(&batch, a.list);
 }
 
-/// Sorted keys to pairs and rows. A body's row holds the pairs in which it is the second body, then those in which it
-/// is the first, both by the id of the other body; the others of the former have smaller ids than itself.
+/// Sorted keys to pairs and rows. The pairs in which a body is the first one stand next to each other, by the ids of
+/// the second ones; a body's row holds those in which it is the second, by the ids of the first ones.
 typedef struct scree_pair_rows_args
 {
     const uint64_t *keys;        ///< (num_pairs) sorted
     uint64_t *second_keys;       ///< (num_pairs) place of j << 32 | pair; first by the ids of i, then sorted by j
     scree_candidate_pair *pairs; ///< (num_pairs)
-    int32_t *first_as_i;         ///< (num_bodies + 1) pairs before the first one with i >= body
-    int32_t *first_as_j;         ///< (num_bodies + 1) second keys before the first one with j >= body
+    int32_t *own_begin;          ///< (num_bodies + 1) pairs before the first one with i >= body
     int32_t *own_before;         ///< (num_bodies + 1) own pairs of all bodies of smaller ids; only if there are ids
-    int64_t *row_begin;          ///< (num_bodies + 1)
-    int32_t *row_pairs;          ///< (2 num_pairs)
+    int32_t *row_begin;          ///< (num_bodies + 1) second keys before the first one with j >= body
+    int32_t *row_pairs;          ///< (num_pairs)
     const int32_t *ids;          ///< (num_bodies) of the body in each place, or NULL: places are ids
     const int32_t *places;       ///< (num_bodies) of the body of each id, or NULL
     int64_t num_pairs;
@@ -180,8 +179,6 @@ typedef struct scree_pair_rows_args
 typedef scree_pair_rows_args scree_pair_unpack_args;
 typedef scree_pair_rows_args scree_pair_own_args;
 typedef scree_pair_rows_args scree_pair_second_keys_args;
-typedef scree_pair_rows_args scree_pair_second_begin_args;
-typedef scree_pair_rows_args scree_pair_row_begin_args;
 
 /// Entry p of a sorted list has body `place`, the entry before it `previous` (-1 for the first one): p is the beginning
 /// of all bodies above `previous` up to `place`. The last entry also begins what follows.
@@ -200,43 +197,30 @@ SCREE_FN void scree_pair_unpack_at(scree_pair_unpack_args a, int64_t p)
     a.pairs[p].i = (int32_t)(key >> a.id_bits);
     a.pairs[p].j = a.places ? a.places[id] : id;
     const int64_t previous = p > 0 ? (int64_t)(a.keys[p - 1] >> a.id_bits) : -1;
-    scree_pair_mark_begins(a, a.first_as_i, p, previous, (int64_t)(key >> a.id_bits));
+    scree_pair_mark_begins(a, a.own_begin, p, previous, (int64_t)(key >> a.id_bits));
 }
 
 /// How many pairs the body of an id is the first one of; then these are added up.
 SCREE_FN void scree_pair_own_at(scree_pair_own_args a, int64_t id)
 {
     const int32_t place = a.places[id];
-    a.own_before[id] = a.first_as_i[place + 1] - a.first_as_i[place];
+    a.own_before[id] = a.own_begin[place + 1] - a.own_begin[place];
 }
 
 /// Pair p to the second keys.
 SCREE_FN void scree_pair_second_keys_at(scree_pair_second_keys_args a, int64_t p)
 {
     const scree_candidate_pair pair = a.pairs[p];
-    const int64_t k = a.ids ? a.own_before[a.ids[pair.i]] + (p - a.first_as_i[pair.i]) : p;
+    const int64_t k = a.ids ? a.own_before[a.ids[pair.i]] + (p - a.own_begin[pair.i]) : p;
     a.second_keys[k] = (uint64_t)pair.j << 32 | (uint64_t)p;
 }
 
-/// Where the bodies begin in the sorted second keys; entry q.
-SCREE_FN void scree_pair_second_begin_at(scree_pair_second_begin_args a, int64_t q)
+/// Entry q of the sorted second keys is that of the rows.
+SCREE_FN void scree_pair_rows_at(scree_pair_rows_args a, int64_t q)
 {
     const int64_t previous = q > 0 ? (int64_t)(a.second_keys[q - 1] >> 32) : -1;
-    scree_pair_mark_begins(a, a.first_as_j, q, previous, (int64_t)(a.second_keys[q] >> 32));
-}
-
-/// Where the row of a body begins; one more at the end.
-SCREE_FN void scree_pair_row_begin_at(scree_pair_row_begin_args a, int64_t body)
-{
-    a.row_begin[body] = (int64_t)a.first_as_i[body] + a.first_as_j[body];
-}
-
-/// Second key p to the row of its second body, pair p to the row of its first body.
-SCREE_FN void scree_pair_rows_at(scree_pair_rows_args a, int64_t p)
-{
-    const int64_t j = (int64_t)(a.second_keys[p] >> 32), i = a.pairs[p].i;
-    a.row_pairs[a.row_begin[j] + (p - a.first_as_j[j])] = (int32_t)(a.second_keys[p] & 0xffffffffu);
-    a.row_pairs[a.row_begin[i + 1] - (a.first_as_i[i + 1] - p)] = (int32_t)p;
+    scree_pair_mark_begins(a, a.row_begin, q, previous, (int64_t)(a.second_keys[q] >> 32));
+    a.row_pairs[q] = (int32_t)(a.second_keys[q] & 0xffffffffu);
 }
 
 #endif

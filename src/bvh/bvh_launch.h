@@ -13,14 +13,12 @@ SCREE_DECLARE_LAUNCH(scree_lbvh_hierarchy)  ///< over inner nodes
 SCREE_DECLARE_LAUNCH(scree_lbvh_left_turns) ///< over blocks of leaves
 SCREE_DECLARE_LAUNCH(scree_lbvh_nodes)      ///< over blocks of leaves
 
-SCREE_DECLARE_LAUNCH(scree_particle_pairs)    ///< over nodes
-SCREE_DECLARE_LAUNCH(scree_wall_pairs)        ///< over blocks of particles
-SCREE_DECLARE_LAUNCH(scree_pair_unpack)       ///< over pairs
-SCREE_DECLARE_LAUNCH(scree_pair_own)          ///< over ids
-SCREE_DECLARE_LAUNCH(scree_pair_second_keys)  ///< over pairs
-SCREE_DECLARE_LAUNCH(scree_pair_second_begin) ///< over pairs
-SCREE_DECLARE_LAUNCH(scree_pair_row_begin)    ///< over bodies, and one more
-SCREE_DECLARE_LAUNCH(scree_pair_rows)         ///< over pairs
+SCREE_DECLARE_LAUNCH(scree_particle_pairs)   ///< over nodes
+SCREE_DECLARE_LAUNCH(scree_wall_pairs)       ///< over blocks of particles
+SCREE_DECLARE_LAUNCH(scree_pair_unpack)      ///< over pairs
+SCREE_DECLARE_LAUNCH(scree_pair_own)         ///< over ids
+SCREE_DECLARE_LAUNCH(scree_pair_second_keys) ///< over pairs
+SCREE_DECLARE_LAUNCH(scree_pair_rows)        ///< over pairs
 
 /// The pairs of scree_particle_pairs_launch() over all nodes, found faster.
 void scree_particle_pairs_find(scree_particle_pairs_args args);

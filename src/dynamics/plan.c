@@ -22,15 +22,14 @@ scree_plan_bytes scree_simulation_plan_bytes(const scree_simulation *simulation)
                         (has_spheres ? sizeof(scree_sphere) : 0);
     const size_t tree =
         2 * sizeof(scree_lbvh_node) + 3 * sizeof(int32_t) + 1 + 2 * (sizeof(uint64_t) + sizeof(int32_t));
-    const size_t rows = 4 * sizeof(int32_t) + sizeof(int64_t);
+    const size_t rows = 4 * sizeof(int32_t);
     const scree_places *places = &s->buffers->places;
     const bool may_move = !places->are_kept && s->particles.num_particles > places->few;
     bytes.search = body + rows + (may_move ? 5 * sizeof(int32_t) + sizeof(scree_pose) : 0);
     bytes.search_scratch = sizeof(scree_box) + sizeof(scree_vec3) + sizeof(scree_real) + tree;
     // ids, rows, batch unless there is but one, first contact now and in the step before
     const bool is_all = has_meshes + has_spheres + has[SCREE_KIND_CLUMP] == 1 && (has_meshes || s->num_walls == 0);
-    bytes.pair =
-        sizeof(scree_candidate_pair) + 2 * sizeof(int32_t) + (is_all ? 0 : sizeof(int32_t)) + 2 * sizeof(int32_t);
+    bytes.pair = sizeof(scree_candidate_pair) + sizeof(int32_t) + (is_all ? 0 : sizeof(int32_t)) + 2 * sizeof(int32_t);
     bytes.pair_scratch = 2 * sizeof(uint64_t);
     if (has_meshes) bytes.mesh_pair = sizeof(scree_pair_memory) + 2 * sizeof(int32_t);
     if ((has_spheres || has[SCREE_KIND_CLUMP]) && (has_meshes || s->num_walls > 0))

@@ -236,8 +236,7 @@ static void gather_block(const scree_gather_args *a, int64_t begin, int64_t end)
     {
         a->force[i] = scree_vec3_scale(a->gravity, a->mass[i]);
         a->torque[i] = scree_vec3_zero();
-        const int64_t end_second = a->row_begin[i + 1] - (a->own_begin[i + 1] - a->own_begin[i]);
-        for (int64_t k = a->row_begin[i]; k < end_second; ++k)
+        for (int64_t k = a->row_begin[i]; k < a->row_begin[i + 1]; ++k)
         {
             // no branch on whether there is one: it cannot be foreseen
             const int32_t first = first_of_pair[a->row_pairs[k]], num = first_of_pair[a->row_pairs[k] + 1] - first;

@@ -1,6 +1,6 @@
 /// \file gather_kernel.h
-/// Force and torque of particle i: the sum over its row of contacts by the other ids, so without atomics and the same
-/// for any number of threads.
+/// Force and torque of particle i: the sum over the contacts in which it is the second body, along its row, then over
+/// those in which it is the first one, which stand next to each other. No atomics, the same for any number of threads.
 #ifndef SCREE_GATHER_KERNEL_H
 #define SCREE_GATHER_KERNEL_H
 
@@ -12,9 +12,9 @@ typedef struct scree_gather_args
     scree_contact_list contacts;
     const scree_contact_side *sides; ///< (2, max_sides) of all i, of all j, or NULL: made here
     int64_t max_sides;
-    const int32_t *own_begin; ///< (num_bodies + 1) first pair in which a body is the first one; for sides
-    const int64_t *row_begin; ///< (num_bodies + 1) rows of candidate pairs
-    const int32_t *row_pairs; ///< (2 num_pairs)
+    const int32_t *own_begin; ///< (num_bodies + 1) first pair in which a body is the first one
+    const int32_t *row_begin; ///< (num_bodies + 1) rows of candidate pairs
+    const int32_t *row_pairs; ///< (num_pairs) in which a body is the second one
     bool are_ids; ///< are the contacts sorted by (i, j), because places are ids? Then the CPU needs no rows either
     const scree_pose *pose; ///< (num_bodies)
     const scree_real *mass; ///< [kg] (num_particles)
@@ -40,40 +40,33 @@ SCREE_FN void scree_gather_contact(const scree_gather_args *a, int64_t c, int64_
     *torque = scree_vec3_add(*torque, side.torque);
 }
 
-SCREE_FN void scree_gather_side(const scree_contact_side *side, scree_vec3 *force, scree_vec3 *torque)
+/// The same, from its sides if they are there.
+SCREE_FN void scree_gather_one(const scree_gather_args *a, int64_t c, int64_t i, bool is_second, scree_vec3 *force,
+                               scree_vec3 *torque)
 {
+    if (!a->sides)
+    {
+        scree_gather_contact(a, c, i, force, torque);
+        return;
+    }
+    const scree_contact_side *side = a->sides + (is_second ? a->max_sides : 0) + c;
     *force = scree_vec3_add(*force, side->force);
     *torque = scree_vec3_add(*torque, side->torque);
-}
-
-/// The same for all contacts of particle i, whose sides are there. Its row begins with the pairs in which it is the
-/// second body. Where it is the first one, pairs and contacts stand next to each other: no row is needed.
-SCREE_FN void scree_gather_sides(const scree_gather_args *a, int64_t i, scree_vec3 *force, scree_vec3 *torque)
-{
-    const int32_t *first_of_pair = a->contacts.first_of_pair;
-    const int32_t own_begin = a->own_begin[i], own_end = a->own_begin[i + 1];
-    for (int64_t k = a->row_begin[i]; k < a->row_begin[i + 1] - (own_end - own_begin); ++k)
-    {
-        const int32_t p = a->row_pairs[k];
-        for (int32_t c = first_of_pair[p]; c < first_of_pair[p + 1]; ++c)
-            scree_gather_side(a->sides + a->max_sides + c, force, torque);
-    }
-    for (int32_t c = first_of_pair[own_begin]; c < first_of_pair[own_end]; ++c)
-        scree_gather_side(a->sides + c, force, torque);
 }
 
 SCREE_FN void scree_gather_at(scree_gather_args a, int64_t i)
 {
     scree_vec3 force = scree_vec3_scale(a.gravity, a.mass[i]);
     scree_vec3 torque = scree_vec3_zero();
-    if (a.sides) scree_gather_sides(&a, i, &force, &torque);
-    else
-        for (int64_t k = a.row_begin[i]; k < a.row_begin[i + 1]; ++k)
-        {
-            const int32_t p = a.row_pairs[k];
-            for (int64_t c = a.contacts.first_of_pair[p]; c < a.contacts.first_of_pair[p + 1]; ++c)
-                scree_gather_contact(&a, c, i, &force, &torque);
-        }
+    const int32_t *first_of_pair = a.contacts.first_of_pair;
+    for (int64_t k = a.row_begin[i]; k < a.row_begin[i + 1]; ++k)
+    {
+        const int32_t p = a.row_pairs[k];
+        for (int32_t c = first_of_pair[p]; c < first_of_pair[p + 1]; ++c)
+            scree_gather_one(&a, c, i, true, &force, &torque);
+    }
+    const int32_t end = first_of_pair[a.own_begin[i + 1]];
+    for (int32_t c = first_of_pair[a.own_begin[i]]; c < end; ++c) scree_gather_one(&a, c, i, false, &force, &torque);
     a.force[i] = force;
     a.torque[i] = torque;
 }

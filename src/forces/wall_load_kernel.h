@@ -23,8 +23,8 @@ typedef struct scree_wall_load_args
 {
     scree_contact_list contacts;
     const scree_candidate_pair *pairs; ///< (num_pairs)
-    const int64_t *row_begin;          ///< (num_bodies + 1) rows of candidate pairs
-    const int32_t *row_pairs;          ///< (2 num_pairs) that of a wall ascends in the ids of the first bodies
+    const int32_t *row_begin;          ///< (num_bodies + 1) rows of candidate pairs
+    const int32_t *row_pairs;          ///< (num_pairs) that of a wall ascends in the ids of the first bodies
     const int32_t *ids;                ///< (num_bodies) of the bodies, or NULL: each is its own
     const scree_pose *pose;            ///< (num_bodies)
     const scree_wall_axis *axes;       ///< (num_moving)

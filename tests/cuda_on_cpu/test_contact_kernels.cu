@@ -344,7 +344,7 @@ static void compare_forces(bool has_sides)
             gather.max_sides = force.max_sides;
             gather.own_begin = where.copy(s->broad_phase.own_begin, num_bodies + 1);
             gather.row_begin = where.copy(s->broad_phase.row_begin, num_bodies + 1);
-            gather.row_pairs = where.copy(s->broad_phase.row_pairs, 2 * num_pairs);
+            gather.row_pairs = where.copy(s->broad_phase.row_pairs, num_pairs);
             gather.pose = force.bodies.pose;
             gather.mass = where.copy(s->particles.mass, num_particles);
             gather.gravity = scree_vec3_make(0, 0, (scree_real)-9.81);
@@ -549,7 +549,7 @@ static void test_wall_loads()
             args.contacts = contacts_on(where, s->contacts, num_pairs);
             args.pairs = where.copy(s->broad_phase.pairs, num_pairs);
             args.row_begin = where.copy(s->broad_phase.row_begin, num_bodies + 1);
-            args.row_pairs = where.copy(s->broad_phase.row_pairs, 2 * num_pairs);
+            args.row_pairs = where.copy(s->broad_phase.row_pairs, num_pairs);
             args.pose = where.copy(b->pose, num_bodies);
             args.axes = where.copy(b->wall_axes, num_moving);
             args.num_moving = num_moving;

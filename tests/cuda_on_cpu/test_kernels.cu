@@ -15,8 +15,6 @@ SCREE_DECLARE_LAUNCH_CUDA(scree_wall_pairs)
 SCREE_DECLARE_LAUNCH_CUDA(scree_pair_unpack)
 SCREE_DECLARE_LAUNCH_CUDA(scree_pair_own)
 SCREE_DECLARE_LAUNCH_CUDA(scree_pair_second_keys)
-SCREE_DECLARE_LAUNCH_CUDA(scree_pair_second_begin)
-SCREE_DECLARE_LAUNCH_CUDA(scree_pair_row_begin)
 SCREE_DECLARE_LAUNCH_CUDA(scree_pair_rows)
 SCREE_DECLARE_LAUNCH_CUDA(scree_predict)
 SCREE_DECLARE_LAUNCH_CUDA(scree_correct)
@@ -325,10 +323,9 @@ static void find_pairs_of(side &where, const int32_t *ids)
     args.keys = keys;
     args.second_keys = where.make<uint64_t>(num_pairs);
     args.pairs = where.make<scree_candidate_pair>(num_pairs);
-    args.first_as_i = where.make<int32_t>(num_bodies + 1);
-    args.first_as_j = where.make<int32_t>(num_bodies + 1);
-    args.row_begin = where.make<int64_t>(num_bodies + 1);
-    args.row_pairs = where.make<int32_t>(2 * num_pairs);
+    args.own_begin = where.make<int32_t>(num_bodies + 1);
+    args.row_begin = where.make<int32_t>(num_bodies + 1);
+    args.row_pairs = where.make<int32_t>(num_pairs);
     args.num_pairs = num_pairs;
     args.num_bodies = num_bodies;
     args.id_bits = id_bits;
@@ -351,12 +348,11 @@ static void find_pairs_of(side &where, const int32_t *ids)
     }
     LAUNCH_ON(where, scree_pair_second_keys, args, num_pairs);
     sort_on(where, args.second_keys, values, num_pairs, 32);
-    LAUNCH_ON(where, scree_pair_second_begin, args, num_pairs);
-    LAUNCH_ON(where, scree_pair_row_begin, args, num_bodies + 1);
     LAUNCH_ON(where, scree_pair_rows, args, num_pairs);
     where.keep(args.pairs, num_pairs);
     where.keep(args.row_begin, num_bodies + 1);
-    where.keep(args.row_pairs, 2 * num_pairs);
+    where.keep(args.own_begin, num_bodies + 1);
+    where.keep(args.row_pairs, num_pairs);
 }
 
 static void find_pairs_on(side &where) { find_pairs_of(where, nullptr); }
@@ -374,7 +370,8 @@ static void test_pairs()
     const scree_broad_phase *broad_phase = &s->broad_phase;
     library.keep(broad_phase->pairs, broad_phase->num_pairs);
     library.keep(broad_phase->row_begin, num_bodies + 1);
-    library.keep(broad_phase->row_pairs, 2 * broad_phase->num_pairs);
+    library.keep(broad_phase->own_begin, num_bodies + 1);
+    library.keep(broad_phase->row_pairs, broad_phase->num_pairs);
     SCREE_CHECK(broad_phase->num_pairs > 200);
     SCREE_CHECK(device.outcome == library.outcome);
 }

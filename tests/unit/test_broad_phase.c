@@ -43,12 +43,12 @@ static void test_chain(void)
     const scree_box boxes[5] = {make_box(2, 0, 0, 0.5), make_box(0, 0, 0, 0.5), make_box(3, 0, 0, 0.5),
                                 make_box(1, 0, 0, 0.5), make_box(9, 0, 0, 0.5)};
     const int32_t expected[3][2] = {{0, 2}, {0, 3}, {1, 3}};
-    const int64_t row_begin[6] = {0, 2, 3, 4, 6, 6};
-    const int32_t row_pairs[6] = {0, 1, 2, 0, 1, 2};
+    const int32_t own_begin[6] = {0, 2, 3, 3, 3, 3}, row_begin[6] = {0, 0, 0, 1, 3, 3}, row_pairs[3] = {0, 1, 2};
     const scree_broad_phase_input input = {.boxes = boxes, .num_particles = 5};
     scree_broad_phase broad_phase = {0};
     SCREE_CHECK(scree_broad_phase_find(&broad_phase, &input) == SCREE_OK);
     check_pairs(&broad_phase, expected, 3);
+    SCREE_CHECK(memcmp(broad_phase.own_begin, own_begin, sizeof own_begin) == 0);
     SCREE_CHECK(memcmp(broad_phase.row_begin, row_begin, sizeof row_begin) == 0);
     SCREE_CHECK(memcmp(broad_phase.row_pairs, row_pairs, sizeof row_pairs) == 0);
     check_valid(&broad_phase, &input);
@@ -75,7 +75,8 @@ static void test_grids_and_sizes(void)
         if (n >= 3)
         {
             const int64_t within = 1 + n + n * n;
-            SCREE_CHECK_INT(broad_phase.row_begin[within + 1] - broad_phase.row_begin[within], 26);
+            SCREE_CHECK_INT(broad_phase.own_begin[within + 1] - broad_phase.own_begin[within], 13);
+            SCREE_CHECK_INT(broad_phase.row_begin[within + 1] - broad_phase.row_begin[within], 13);
         }
         free(boxes);
     }
@@ -329,7 +330,8 @@ static void check_same(const scree_broad_phase *a, const scree_broad_phase *b, i
     const size_t num = (size_t)a->num_pairs;
     SCREE_CHECK(memcmp(a->pairs, b->pairs, num * sizeof *a->pairs) == 0);
     SCREE_CHECK(memcmp(a->row_begin, b->row_begin, (size_t)(num_bodies + 1) * sizeof *a->row_begin) == 0);
-    SCREE_CHECK(memcmp(a->row_pairs, b->row_pairs, 2 * num * sizeof *a->row_pairs) == 0);
+    SCREE_CHECK(memcmp(a->own_begin, b->own_begin, (size_t)(num_bodies + 1) * sizeof *a->own_begin) == 0);
+    SCREE_CHECK(memcmp(a->row_pairs, b->row_pairs, num * sizeof *a->row_pairs) == 0);
 }
 
 static void test_same_bits_for_any_number_of_threads(void)
@@ -424,8 +426,9 @@ static void test_rows_in_any_order(void)
     };
     // bodies 0, 3 and 8 have no pairs
     const int32_t ids[NUM_PAIRS][2] = {{1, 4}, {1, 7}, {2, 4}, {4, 5}, {4, 7}, {6, 7}};
-    const int64_t row_begin[NUM_BODIES + 1] = {0, 0, 2, 3, 3, 7, 8, 9, 12, 12};
-    const int32_t row_pairs[2 * NUM_PAIRS] = {0, 1, 2, 0, 2, 3, 4, 3, 5, 1, 4, 5};
+    const int32_t own_begin[NUM_BODIES + 1] = {0, 0, 2, 3, 3, 5, 5, 6, 6, 6};
+    const int32_t row_begin[NUM_BODIES + 1] = {0, 0, 0, 0, 0, 2, 3, 3, 6, 6};
+    const int32_t row_pairs[NUM_PAIRS] = {0, 2, 3, 1, 4, 5};
     uint64_t keys[NUM_PAIRS];
     for (int p = 0; p < NUM_PAIRS; ++p) keys[p] = (uint64_t)ids[p][0] << 4 | (uint64_t)ids[p][1];
     for (int order = 0; order < SCREE_TEST_NUM_ORDERS; ++order)
@@ -433,13 +436,11 @@ static void test_rows_in_any_order(void)
         scree_sort_buffers sort = {0};
         SCREE_CHECK(scree_sort_reserve(&sort, NUM_PAIRS, false) == SCREE_OK);
         scree_candidate_pair pairs[NUM_PAIRS];
-        int32_t first_as_i[NUM_BODIES + 1], first_as_j[NUM_BODIES + 1], found_pairs[2 * NUM_PAIRS];
-        int64_t found_begin[NUM_BODIES + 1];
+        int32_t found_own[NUM_BODIES + 1], found_begin[NUM_BODIES + 1], found_pairs[NUM_PAIRS];
         const scree_pair_rows_args args = {.keys = keys,
                                            .second_keys = sort.keys,
                                            .pairs = pairs,
-                                           .first_as_i = first_as_i,
-                                           .first_as_j = first_as_j,
+                                           .own_begin = found_own,
                                            .row_begin = found_begin,
                                            .row_pairs = found_pairs,
                                            .num_pairs = NUM_PAIRS,
@@ -448,10 +449,9 @@ static void test_rows_in_any_order(void)
         SCREE_LAUNCH_IN_ORDER(scree_pair_unpack, args, NUM_PAIRS, order);
         SCREE_LAUNCH_IN_ORDER(scree_pair_second_keys, args, NUM_PAIRS, order);
         scree_sort(&sort, NUM_PAIRS, 32);
-        SCREE_LAUNCH_IN_ORDER(scree_pair_second_begin, args, NUM_PAIRS, order);
-        SCREE_LAUNCH_IN_ORDER(scree_pair_row_begin, args, NUM_BODIES + 1, order);
         SCREE_LAUNCH_IN_ORDER(scree_pair_rows, args, NUM_PAIRS, order);
         SCREE_CHECK(memcmp(pairs, ids, sizeof pairs) == 0);
+        SCREE_CHECK(memcmp(found_own, own_begin, sizeof own_begin) == 0);
         SCREE_CHECK(memcmp(found_begin, row_begin, sizeof row_begin) == 0);
         SCREE_CHECK(memcmp(found_pairs, row_pairs, sizeof row_pairs) == 0);
         scree_sort_destroy(&sort);
@@ -474,7 +474,7 @@ static void test_validation_sees_faults(void)
         if (fault == 1) broad_phase.pairs[1] = broad_phase.pairs[0];
         if (fault == 2) broad_phase.pairs[0] = (scree_candidate_pair){1, 0};
         if (fault == 3) broad_phase.pairs[2].j = 4;
-        if (fault == 4) broad_phase.row_pairs[1] = 1;
+        if (fault == 4) broad_phase.row_pairs[1] = 2;
         if (fault == 5) broad_phase.row_begin[2] = 2;
         if (fault == 6) broad_phase.num_pairs = 2;
         scree_report report = {0};

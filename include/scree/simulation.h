@@ -97,7 +97,9 @@ extern "C"
     /// One step. SCREE_OUT_OF_MEMORY, SCREE_UNSTABLE and SCREE_DEVICE_FAILED lose the simulation.
     scree_status scree_simulation_step(scree_simulation *simulation, scree_report *report);
 
-    double scree_simulation_time(const scree_simulation *simulation);       ///< [s]
+    double scree_simulation_time(const scree_simulation *simulation); ///< [s]
+    /// [s] of which particles and contacts here are: now, or with a GPU when they were last observed.
+    double scree_simulation_observed_time(const scree_simulation *simulation);
     double scree_simulation_time_step(const scree_simulation *simulation);  ///< [s]
     int64_t scree_simulation_num_steps(const scree_simulation *simulation); ///< steps that the scene's end asks for
     int64_t scree_simulation_num_particles(const scree_simulation *simulation);

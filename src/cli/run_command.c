@@ -206,17 +206,18 @@ static void show_progress(run_state *run)
     run->shown_clock = now;
     run->shown_step = step;
 
-    // on the CPU a look would bring particles home that have changed places, and these digits do not need that
-    if (!run->is_lost && run->device != NULL) scree_simulation_observe(run->simulation, &run->report);
+    // a look would bring particles home that have changed places, and from a GPU the whole state: these digits are
+    // not worth it. On the CPU they are of now, on a GPU of the last look for something else.
+    const double time = scree_simulation_time(simulation), observed = scree_simulation_observed_time(simulation);
     const scree_energies energies = scree_simulation_energies(simulation);
     const double share = num_steps > 0 ? (double)step / (double)num_steps : 1;
     char left[32], bar[21];
     format_bar(share, bar);
     if (run->is_terminal) printf("\r[%s] ", bar);
-    printf("%5.1f %%  t %.4g s  left %s  %.3g steps/s  %lld contacts  E_kin %.3g J", 100 * share,
-           scree_simulation_time(simulation), format_duration((double)(num_steps - step) / run->speed, left),
-           run->speed, (long long)scree_simulation_counters(simulation).num_contacts,
-           energies.kinetic + energies.rotational);
+    printf("%5.1f %%  t %.4g s  left %s  %.3g steps/s  %lld contacts  E_kin %.3g J", 100 * share, time,
+           format_duration((double)(num_steps - step) / run->speed, left), run->speed,
+           (long long)scree_simulation_counters(simulation).num_contacts, energies.kinetic + energies.rotational);
+    if (observed < time) printf(" at %.4g s", observed);
     fputs(run->is_terminal ? "\033[K" : "\n", stdout);
     fflush(stdout);
 }

@@ -257,7 +257,7 @@ scree_status scree_simulation_use_device(scree_simulation *simulation, scree_dev
     scree_narrow_phase_destroy(&simulation->narrow_phase);
     simulation->narrow_phase.options = kept.options;
     simulation->narrow_phase.separation = kept.separation;
-    simulation->is_observed = true;
+    simulation->observed_step = simulation->step;
     return SCREE_OK;
 }
 
@@ -269,7 +269,6 @@ void scree_take_from_device(scree_simulation *simulation)
     simulation->step = there->step;
     simulation->energies = there->energies;
     simulation->counters = there->counters;
-    simulation->is_observed = false;
 }
 
 scree_status scree_simulation_observe(scree_simulation *simulation, scree_report *report)
@@ -277,14 +276,14 @@ scree_status scree_simulation_observe(scree_simulation *simulation, scree_report
     scree_simulation *there = scree_simulation_there(simulation);
     scree_status status = scree_bring_home(there);
     if (status != SCREE_OK) scree_report_add(report, "there is no memory to look at the state of a step");
-    if (status != SCREE_OK || simulation->there == NULL || simulation->is_observed) return status;
+    if (status != SCREE_OK || simulation->there == NULL || simulation->observed_step == simulation->step) return status;
     scree_particles_read(there->device, &simulation->particles, &there->particles);
     status = scree_contact_list_copy(&simulation->contacts, &there->contacts);
     if (status == SCREE_OK && simulation->averages.num_bins > 0)
         status = scree_collisions_copy(&simulation->averages.collisions, &there->averages.collisions);
     const scree_status state_of_device = scree_device_status(there->device, report);
     if (state_of_device != SCREE_OK) return state_of_device;
-    simulation->is_observed = status == SCREE_OK;
+    if (status == SCREE_OK) simulation->observed_step = simulation->step;
     return status;
 }
 

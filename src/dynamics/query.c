@@ -16,6 +16,12 @@ double scree_simulation_time(const scree_simulation *simulation)
     return (double)simulation->step * simulation->time_step;
 }
 
+double scree_simulation_observed_time(const scree_simulation *simulation)
+{
+    const int64_t step = simulation->there == NULL ? simulation->step : simulation->observed_step;
+    return (double)step * simulation->time_step;
+}
+
 double scree_simulation_time_step(const scree_simulation *simulation) { return simulation->time_step; }
 
 int64_t scree_simulation_num_steps(const scree_simulation *simulation)

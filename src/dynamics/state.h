@@ -21,7 +21,7 @@ struct scree_simulation
     scree_device *device; ///< where the arrays that kernels work on lie, NULL: the CPU
     /// The same simulation with its arrays on a GPU, where the step is done; see on_device.h. NULL: it is done here.
     struct scree_simulation *there;
-    bool is_observed; ///< what is there has been copied to the arrays here
+    int64_t observed_step; ///< of which what is there has been copied to the arrays here
 
     // constant: set by scree_simulation_create()
     const scree_scene *scene;      ///< borrowed; must outlive the simulation

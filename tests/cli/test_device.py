@@ -4,6 +4,7 @@ with faults.
 SCREE_BUILD_DIR holds the program (scree) and the one with the emulated device (scree_emulated).
 """
 
+import csv
 import json
 import os
 import re
@@ -11,6 +12,8 @@ import subprocess
 from pathlib import Path
 
 import pytest
+
+from terminal import on_terminal
 
 ROOT = Path(os.environ.get("SCREE_SOURCE_DIR", Path(__file__).parents[2]))
 BUILD = Path(os.environ.get("SCREE_BUILD_DIR", ROOT / "build/release")).resolve()
@@ -67,6 +70,21 @@ def test_a_run_on_the_device_is_that_of_the_cpu(scene, tmp_path):
     run(BUILD / "scree", scene, tmp_path / "cpu")
     run(EMULATED, scene, tmp_path / "cuda", "--device", "cuda")
     assert state_of(tmp_path / "cuda") == state_of(tmp_path / "cpu")
+
+
+def test_progress_leaves_the_state_on_the_device(scene, tmp_path):
+    """It tells the energy of the last row of series.csv, and of when that is."""
+    text, code = on_terminal([EMULATED, "run", scene, "-o", tmp_path / "run", "--device", "cuda"],
+                             dict(os.environ, OMP_NUM_THREADS="1"))
+    assert code == 0
+    lines = re.findall(r"  t ([0-9.e-]+) s  left [^\r]*  E_kin ([^ ]+) J(?: at ([0-9.e-]+) s)?\033\[K", text)
+    rows = {f"{float(row['time [s]']):.4g}": float(row["kinetic [J]"]) + float(row["rotational [J]"])
+            for row in csv.DictReader((tmp_path / "run/series.csv").read_text().splitlines())}
+    older = [line for line in lines if line[2] != ""]
+    assert older and lines[-1][2] == ""
+    for now, energy, then in older:
+        assert 0 <= float(now) - float(then) <= 1.02e-3
+        assert energy == f"{rows[then]:.3g}"
 
 
 @pytest.mark.parametrize("machine, words", [

@@ -93,13 +93,20 @@ SCREE_FN bool scree_pair_is_apart(const scree_bodies *bodies, scree_candidate_pa
     return gap > 0;
 }
 
-/// Entry m of the batch: no contacts, or among those to be looked at.
+/// Entry m of the batch: no contacts, -1, or the class of those to be looked at.
+SCREE_FN int32_t scree_class_if_active(const scree_mesh_apart_args *a, int64_t m)
+{
+    const int32_t p = scree_pair_of_batch(a->batch, m);
+    a->list.first_of_pair[p] = 0;
+    if (scree_pair_is_apart(&a->bodies, a->pairs[p], a->memory + m, a->use)) return -1;
+    return scree_work_class_of_pair(a, a->pairs[p]);
+}
+
+/// Entry m to those of its class, if it may touch.
 SCREE_FN void scree_mesh_apart_at(scree_mesh_apart_args a, int64_t m)
 {
-    const int32_t p = scree_pair_of_batch(a.batch, m);
-    a.list.first_of_pair[p] = 0;
-    if (scree_pair_is_apart(&a.bodies, a.pairs[p], a.memory + m, a.use)) return;
-    const int32_t work_class = scree_work_class_of_pair(&a, a.pairs[p]);
+    const int32_t work_class = scree_class_if_active(&a, m);
+    if (work_class < 0) return;
     scree_active_of_class(&a, work_class)[scree_atomic_count(a.tally->num_active + work_class, 1)] = (int32_t)m;
 }
 

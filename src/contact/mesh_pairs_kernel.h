@@ -22,6 +22,18 @@ typedef struct scree_kept_lever
     scree_vec3 area_vector, torque_vector;
 } scree_kept_lever;
 
+/// On the CPU: a range of the batch, as many as threads. Each thread begins with its own, so that from step to step it
+/// mostly meets the bodies that it had before, and helps the others when that is done. The active entries of a range
+/// lie in `active` from its beginning on.
+typedef struct scree_pair_share
+{
+    int64_t begin, end; ///< entries
+    int64_t num_looked; ///< of these, looked at by somebody
+    int64_t num_active[SCREE_NUM_WORK_CLASSES];
+    int64_t num_taken[SCREE_NUM_WORK_CLASSES]; ///< active entries that somebody has taken up
+    int64_t between[8];                        ///< a line of the caches
+} scree_pair_share;
+
 typedef struct scree_mesh_pairs_args
 {
     scree_bodies bodies;
@@ -30,6 +42,8 @@ typedef struct scree_mesh_pairs_args
     scree_pair_memory *memory;         ///< (num in batch)
     int32_t *active; ///< (classes.last - classes.first + 1, max_active) entries that may touch, by class, in any order
     int64_t max_active;
+    scree_pair_share *shares; ///< (num_shares) on the CPU
+    int32_t num_shares;
     scree_work_classes classes;
     scree_kept_overlap *kept;      ///< (max_kept) overlaps of all entries that touch; of one entry in order
     scree_kept_lever *kept_levers; ///< (max_kept) or NULL if the list has none
@@ -93,7 +107,7 @@ SCREE_FN bool scree_pair_is_apart(const scree_bodies *bodies, scree_candidate_pa
     return gap > 0;
 }
 
-/// Entry m of the batch: no contacts, -1, or the class of those to be looked at.
+/// Entry m of the batch: no contacts and -1, or the class of those to be looked at.
 SCREE_FN int32_t scree_class_if_active(const scree_mesh_apart_args *a, int64_t m)
 {
     const int32_t p = scree_pair_of_batch(a->batch, m);

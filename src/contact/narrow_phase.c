@@ -30,6 +30,7 @@ struct scree_narrow_phase_buffers
     scree_overlap_pool pool;
     scree_overlap_result *results; ///< (slices of the pool, max_results) of pairs under way
     int64_t num_with_results;      ///< slices
+    scree_pair_share *shares;      ///< (num_with_results) on the CPU
     int32_t max_results;           ///< of one pair
     scree_kept_lever *kept_levers; ///< (max_levers) of pairs that touch, or NULL
     int64_t max_levers;
@@ -66,6 +67,7 @@ void scree_narrow_phase_destroy(scree_narrow_phase *narrow_phase)
         scree_overlap_pool_destroy(&b->pool);
         if (narrow_phase->tally == NULL) scree_device_free(device, b->tally);
         scree_device_free(device, b->results);
+        scree_device_free(device, b->shares);
         scree_device_free(device, b->kept_levers);
         scree_device_free(device, b->first_kept);
         scree_device_free(device, b->active);
@@ -222,7 +224,9 @@ static scree_status reserve_slices(scree_narrow_phase *narrow_phase, scree_overl
     if (num_slices <= b->num_with_results && max_results <= b->max_results) return SCREE_OK;
     b->num_with_results = 0;
     if (max_results > b->max_results) b->max_results = max_results;
-    if (!renew(narrow_phase->device, &b->results, num_slices, (size_t)b->max_results * sizeof *b->results))
+    scree_device *device = narrow_phase->device;
+    if (!renew(device, &b->results, num_slices, (size_t)b->max_results * sizeof *b->results) ||
+        (device == NULL && !renew(device, &b->shares, num_slices, sizeof *b->shares)))
         return SCREE_OUT_OF_MEMORY;
     b->num_with_results = num_slices;
     return SCREE_OK;
@@ -360,6 +364,8 @@ static scree_mesh_pairs_args mesh_args(const search *s)
     args.memory = b->memory;
     args.active = b->active;
     args.max_active = b->max_mesh_pairs;
+    args.shares = b->shares;
+    args.num_shares = s->narrow_phase->device == NULL ? (int32_t)b->num_with_results : 0;
     args.classes = s->narrow_phase->classes;
     args.kept = scree_contact_list_spare(s->list);
     args.kept_levers = s->list->has_no_levers ? NULL : b->kept_levers;
@@ -401,14 +407,12 @@ static void find_overlaps(const search *s)
     overlaps.results = b->results;
     overlaps.max_results = b->max_results;
     overlaps.options = s->narrow_phase->options;
-    // threads of the CPU take several at once, so that they meet seldom
-    overlaps.num_at_once = device == NULL ? 8 : 1;
     for (int32_t c = args.classes.first; c <= args.classes.last; ++c)
     {
         overlaps.work_class = c;
         overlaps.num_lanes = num_lanes_of(s->narrow_phase, c);
-        int64_t num_takers = (num + overlaps.num_at_once - 1) / overlaps.num_at_once;
-        num_takers = scree_min_count(num_takers, scree_min_count(b->pool.num_slices, num_at_once(s->narrow_phase, c)));
+        const int64_t num_takers =
+            scree_min_count(num, scree_min_count(b->pool.num_slices, num_at_once(s->narrow_phase, c)));
         if (overlaps.options.separate_patches) scree_overlap_patches_launch_on(device, overlaps, num_takers);
         else scree_overlap_pairs_launch_on(device, overlaps, num_takers);
     }

@@ -15,9 +15,8 @@ typedef struct scree_overlap_pairs_args
     scree_overlap_result *results; ///< (num of the launch, max_results) of the pair under way
     int32_t max_results;
     scree_overlap_options options;
-    int64_t num_at_once; ///< pairs that are taken together
-    int32_t work_class;  ///< of the pairs that are taken
-    int32_t num_lanes;   ///< of a team on a GPU: see scree_work_num_lanes(); no result depends on it
+    int32_t work_class; ///< of the pairs that are taken
+    int32_t num_lanes;  ///< of a team on a GPU: see scree_work_num_lanes(); no result depends on it
 } scree_overlap_pairs_args;
 
 /// Active entry k of the class, worked on by index i of the launch. Without enough room nothing but the lack is noted:
@@ -57,28 +56,17 @@ SCREE_FN void scree_overlap_take_pairs(const scree_overlap_pairs_args *a, const 
     {
         // the one who leads takes for all; batches have indices of 32 bits
         int32_t k = 0;
-        if (scree_team_leads(team))
-            k = (int32_t)scree_atomic_count(a->meshes.tally->num_taken + a->work_class, a->num_at_once);
+        if (scree_team_leads(team)) k = (int32_t)scree_atomic_count(a->meshes.tally->num_taken + a->work_class, 1);
         k = scree_team_sum(team, k);
         if (k >= tally->num_active[a->work_class]) return;
-        // on a GPU what is held here is held all through an overlap, whose registers it takes
-        do {
-            scree_overlap_of_pair(a, team, i, k, may_separate);
-            scree_team_sync(team);
-            ++k;
-        } while (k % a->num_at_once != 0 && k < tally->num_active[a->work_class]);
+        scree_overlap_of_pair(a, team, i, k, may_separate);
+        scree_team_sync(team);
     }
 }
 
 SCREE_FN void scree_overlap_pairs_team_at(scree_overlap_pairs_args a, const scree_team *team, int64_t i)
 {
     scree_overlap_take_pairs(&a, team, (int32_t)i, false);
-}
-
-SCREE_FN void scree_overlap_pairs_at(scree_overlap_pairs_args a, int64_t i)
-{
-    const scree_team team = scree_team_alone();
-    scree_overlap_pairs_team_at(a, &team, i);
 }
 
 /// The same where patches are told apart: by itself, because it takes a stack on a GPU that no other step needs.
@@ -88,11 +76,4 @@ SCREE_FN void scree_overlap_patches_team_at(scree_overlap_patches_args a, const 
 {
     scree_overlap_take_pairs(&a, team, (int32_t)i, true);
 }
-
-SCREE_FN void scree_overlap_patches_at(scree_overlap_patches_args a, int64_t i)
-{
-    const scree_team team = scree_team_alone();
-    scree_overlap_patches_team_at(a, &team, i);
-}
-
 #endif

@@ -171,6 +171,8 @@ static void find_overlaps_on(side &where, bool separates)
     args.classes = {0, 2};
     args.max_active = num;
     args.active = where.make<int32_t>(3 * num);
+    args.num_shares = 3;
+    args.shares = where.zeros<scree_pair_share>(args.num_shares);
     args.max_kept = num;
     args.kept = where.make<scree_kept_overlap>(num);
     args.kept_levers = where.make<scree_kept_lever>(num);
@@ -194,7 +196,6 @@ static void find_overlaps_on(side &where, bool separates)
     overlaps.options.separate_patches = separates;
     overlaps.max_results = separates ? 4 : 1;
     overlaps.results = where.make<scree_overlap_result>(num_slices * overlaps.max_results);
-    overlaps.num_at_once = 3;
     for (int32_t work_class = 0; work_class < 3; ++work_class)
     {
         overlaps.work_class = work_class;
@@ -204,9 +205,8 @@ static void find_overlaps_on(side &where, bool separates)
     }
     where.keep(args.memory, num);
     const scree_pair_tally tally = where.read(args.tally, 1)[0];
-    const int64_t num_active = tally.num_active[0] + tally.num_active[1] + tally.num_active[2];
-    SCREE_CHECK(num_active > 20 && num_active < num && tally.num_lacking[SCREE_LACK_PIECES] == 0);
-    SCREE_CHECK(tally.num_active[0] > 0);
+    const int64_t *num_of = tally.num_active, num_active = num_of[0] + num_of[1] + num_of[2];
+    SCREE_CHECK(num_of[0] > 0 && num_active > 20 && num_active < num && tally.num_lacking[SCREE_LACK_PIECES] == 0);
 
     std::vector<int32_t> first(1, 0);
     for (const int32_t num_contacts : where.read(args.list.first_of_pair, num_pairs))

@@ -76,4 +76,5 @@ SCREE_FN void scree_overlap_patches_team_at(scree_overlap_patches_args a, const 
 {
     scree_overlap_take_pairs(&a, team, (int32_t)i, true);
 }
+
 #endif

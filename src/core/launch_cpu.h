@@ -52,13 +52,4 @@
     }                                                                                     \
     SCREE_DEFINE_LAUNCH_ON(name)
 
-/// One index per thread: for bodies that share the work out themselves.
-#define SCREE_DEFINE_LAUNCH_FEW(name)                                   \
-    void name##_launch(name##_args args, int64_t num)                   \
-    {                                                                   \
-        SCREE_PRAGMA(omp parallel for schedule(static, 1) if (num > 1)) \
-        for (int64_t i = 0; i < num; ++i) name##_at(args, i);           \
-    }                                                                   \
-    SCREE_DEFINE_LAUNCH_ON(name)
-
 #endif

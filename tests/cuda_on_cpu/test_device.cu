@@ -100,6 +100,7 @@ static std::vector<unsigned char> found_by(const scree_broad_phase *broad_phase,
     scree_device *device = broad_phase->device;
     if (num_particles > 0) append(&bytes, device, broad_phase->tree.view.nodes, 2 * num_particles - 1);
     append(&bytes, device, broad_phase->pairs, broad_phase->num_pairs);
+    append(&bytes, device, broad_phase->own_begin, num_bodies + 1);
     append(&bytes, device, broad_phase->row_begin, num_bodies + 1);
     append(&bytes, device, broad_phase->row_pairs, broad_phase->num_pairs);
     return bytes;
